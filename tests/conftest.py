@@ -39,7 +39,7 @@ SLOW = {
     "view/report/test_catalog.py": 19,
     "dynamics/test_motors.py": 18,
     "test_docs_examples.py": 26,
-    "view/page/test_viewer.py": 17,
+    "view/page/test_viewer.py": 75,
     "model/pairs/test_minimal_kind.py": 16,
     "configurations/test_random.py": 15,
     "view/animation/test_svg.py": 15,

@@ -1,6 +1,6 @@
 """The moving sketch and the plots in a real browser: where the solver is, and what the switches do."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -328,21 +328,51 @@ NEARER = """() => {
 }"""
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        *("jaw-crusher", "hydraulic-digger"),
-        *(
-            pytest.param(name, marks=pytest.mark.full)
-            for name in catalog.NAMES
-            if name not in {"jaw-crusher", "hydraulic-digger"}
-        ),
-    ],
-)
+SIZED = """([width, height]) => {
+  const player = compoundkin.players[0];
+  Object.assign(player.svg.style, { width: `${width}px`, maxHeight: `${height}px` });
+  player.fit();
+}"""
+SKETCH = f"(() => {{ const box = {PLAYER}.svg.getBoundingClientRect(); return [box.width, box.height]; }})()"
+# Room for the sketch on a page: as wide and at most as high, in pixels.
+ROOM = {DESK: (887, 604), PHONE: (310, 444)}
+
+
+def assert_letters_are_near(view: Any) -> None:
+    """At every pose; a letter farther than 24 pixels has a line to its point."""
+    told, wrong = view.value(NEARER)
+    assert told
+    assert wrong == []
+
+
+@pytest.mark.parametrize("name", ["jaw-crusher", "hydraulic-digger"])
 def test_no_letter_is_nearer_to_another_point_than_to_its_own(name: str, made: Any, opened: Any) -> None:
-    """At every pose on a desk and a phone; a letter farther than 24 pixels has a line to its point."""
+    """On a desk and a phone."""
     for size in (DESK, PHONE):
         view = opened(made(name), size)
-        told, wrong = view.value(NEARER)
+        assert_letters_are_near(view)
+        width, height = view.value(SKETCH)
+        assert width == pytest.approx(ROOM[size][0], abs=1)
+        assert height <= ROOM[size][1] + 1
+
+
+@pytest.fixture(scope="module")
+def window(contexts: Callable[..., Any]) -> Iterator[Any]:
+    """One window for many players: a new one costs more than what is asked of each."""
+    opened = contexts(DESK, "").new_page()
+    yield opened
+    opened.close()
+
+
+@pytest.mark.full
+@catalog.each(name for name in catalog.NAMES if name not in {"jaw-crusher", "hydraulic-digger"})
+def test_no_letter_of_any_mechanism_is_nearer_to_another_point(name: str, window: Any, tmp_path: Path) -> None:
+    """In the sketch alone, as large as on a page: a page with all its tables takes three times as long."""
+    path = tmp_path / f"{name}.html"
+    path.write_text(player(catalog.motion(name)), encoding="utf-8")
+    window.goto(path.as_uri())
+    for room in ROOM.values():
+        window.evaluate(SIZED, room)
+        told, wrong = window.evaluate(NEARER)
         assert told
         assert wrong == []

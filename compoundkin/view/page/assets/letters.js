@@ -41,20 +41,20 @@
       this.pixels = 1; // for a picture unit, as fit() or the first pose after a change of the view finds it
       this.isMeasured = false; // the browser lays the page out anew to measure: once for a view, not at each pose
       this.whole = 1; // the same where the picture is not enlarged
+      this.fitted = 0; // pixels for a picture unit at the last fit
       this.leaders = page.drawn("g", { class: "leaders", "aria-hidden": "true", "data-tool": "" });
       player.svg.querySelector(".parts").before(this.leaders);
     }
     // on a small picture they are drawn larger; where it is enlarged they do not grow with it. Tells whether they changed.
     fit() {
       const { svg, base } = this.player;
-      const grown = ({ width, height }) => {
-        const pixels = Math.min(svg.clientWidth / width, svg.clientHeight / height);
-        return pixels > 0 ? Math.min(LARGEST, Math.max(Math.min(1, LARGE / pixels), LEGIBLE / pixels)) : 1;
-      };
+      const pixelsOf = ({ width, height }) => Math.min(svg.clientWidth / width, svg.clientHeight / height);
+      const grown = (pixels) => (pixels > 0 ? Math.min(LARGEST, Math.max(Math.min(1, LARGE / pixels), LEGIBLE / pixels)) : 1);
       this.isMeasured = false;
-      const size = grown(svg.viewBox.baseVal), whole = grown(base);
-      if (Math.abs(size - this.size) < SAME && Math.abs(whole - this.whole) < SAME) return false;
-      Object.assign(this, { size, whole });
+      const fitted = pixelsOf(svg.viewBox.baseVal), size = grown(fitted), whole = grown(pixelsOf(base));
+      // a letter that is as large as before can be farther from its point, in pixels, and want a line to it
+      if ([size - this.size, whole - this.whole, fitted - this.fitted].every((by) => Math.abs(by) < SAME)) return false;
+      Object.assign(this, { size, whole, fitted });
       return true;
     }
     // letters are larger than numbers, and have to grow less
