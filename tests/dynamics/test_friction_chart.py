@@ -373,7 +373,7 @@ def test_pairs_that_never_slide_have_no_sense() -> None:
     chart = chart_of(ck.solve(crank, {"crank": [0.3]}), ("crank",), {})
     assert isinstance(chart, FrictionTable)
     for value in (0.3, 1.1, 2.9):
-        assert not chart._senses(chart.state(0.0, np.array([value]), np.array([2.0]))).any()
+        assert not chart._solved(chart.state(0.0, np.array([value]), np.array([2.0])), 1.0).senses.any()
 
 
 def test_a_friction_that_equilibrium_does_not_determine_is_refused() -> None:

@@ -212,7 +212,7 @@ class DriverState:
     def moved(self, accelerations: Number) -> Motion:
         """Return the state as such a motion with other accelerations of the free drivers."""
         second = np.concatenate([accelerations, self.prescribed])
-        return accelerated_motion(self, self.chart.start, self.speeds, second[:, None])
+        return accelerated_motion(self, self.chart.start, second)
 
 
 ONLY = slice(0, 1)
@@ -469,27 +469,42 @@ class SimulatedState:
         return np.ravel(quantity(self.motion, name).values)[0]
 
 
-def accelerated_motion(state: DriverState, start: Motion, speeds: Number, second: Number) -> Motion:
-    """Return a state with other speeds as a motion whose poses differ in accelerations (drivers, poses)."""
-    count = second.shape[1]
-    rows = zip(state.chart.names, state.values, speeds, second, strict=True)
+def accelerated_motion(state: DriverState, start: Motion, second: Number) -> Motion:
+    """Return a state as a motion of one pose with such accelerations of the drivers."""
+    rows = zip(state.chart.names, state.values, state.speeds, second.tolist(), strict=True)
     drives: dict[str, tuple[Number, ...]] = {
-        name: (np.array([[value]]), np.array([[speed]]), row[None]) for name, value, speed, row in rows
+        name: tuple(np.array([[one]]) for one in (value, speed, a)) for name, value, speed, a in rows
     }
-    # the bias is quadratic in the speeds, and known at those of the state only
-    is_own = speeds is state.speeds
 
     def true(series: Series) -> Series:
         if len(series.c) < 3:
             return Series((_entry(series.c[0]), *[0.0 * _entry(series.c[0])] * 2))
         rows = by_drivers(series.c[1], state.chart.names)
-        bias = _entry(series.c[2]) if is_own else 0.0
-        return Series((_entry(series.c[0]), np.reshape(rows @ speeds, (1, 1)), bias + (rows @ second)[None] / 2.0))
+        moved, grown = (np.reshape(rows @ by, (1, 1)) for by in (state.speeds, second / 2.0))
+        return Series((_entry(series.c[0]), moved, _entry(series.c[2]) + grown))
 
-    poses = {name: pose if pose is FIXED else _moved(pose, true) for name, pose in state.block.world.items()}
-    inputs = replace(start.inputs.driven(drives), shape=(count,))
-    time, failed = np.full(count, state.time), np.zeros((1, count), dtype=int)
-    return replace(start, order=2, inputs=inputs, poses=poses, failed=failed, time=time)
+    return _single_pose(state, start, drives, true)
+
+
+def unit_motion(state: DriverState, start: Motion) -> Motion:
+    """Return a state of a single driver as a motion of one pose at unit speed, without acceleration."""
+    (name,), value = state.chart.names, state.values[0]
+    drives: dict[str, tuple[Number, ...]] = {name: tuple(np.array([[one]]) for one in (value, 1.0, 0.0))}
+
+    def unit(series: Series) -> Series:
+        return Series(tuple(np.reshape(np.ravel(c)[0], (1, 1)) for c in (*series.c, 0.0, 0.0)[:3]))
+
+    return _single_pose(state, start, drives, unit)
+
+
+def _single_pose(
+    state: DriverState, start: Motion, drives: Mapping[str, tuple[Number, ...]], changed: Callable[[Series], Series]
+) -> Motion:
+    """Return a state as a motion of one pose, with the series of its poses changed."""
+    poses = {name: pose if pose is FIXED else _moved(pose, changed) for name, pose in state.block.world.items()}
+    inputs = replace(start.inputs.driven(drives), shape=(1,))
+    failed = np.zeros((1, 1), dtype=int)
+    return replace(start, order=2, inputs=inputs, poses=poses, failed=failed, time=np.full(1, state.time))
 
 
 def _moved(pose: Pose, true: Any) -> Pose:

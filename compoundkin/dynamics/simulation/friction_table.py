@@ -27,7 +27,6 @@ from compoundkin.dynamics.friction.coulomb_friction import (
     NormalForceComponents,
     NotUniqueMotion,
     PoseInfluence,
-    block_with_friction,
     normal_forces_by,
     normal_forces_of,
     solve_coulomb,
@@ -50,7 +49,7 @@ from compoundkin.dynamics.reactions.reverse_pass import (
     stressed_blocks,
 )
 from compoundkin.dynamics.reactions.undetermined import spare_force
-from compoundkin.dynamics.simulation.driver_state import DriverState, PushedState, Rates, accelerated_motion, needs_time
+from compoundkin.dynamics.simulation.driver_state import DriverState, PushedState, Rates, needs_time, unit_motion
 from compoundkin.dynamics.simulation.stop_contacts import holding
 from compoundkin.dynamics.simulation.tabulated_chart import (
     DRIVE_SCALES,
@@ -116,11 +115,11 @@ class NormalForceState:
         found: Number = self.by + (self.along / self.inertia)[:, None] * self.second
         return found
 
-    def free(self, held: Number | None = None, grown: int = 0) -> FreeMotion | None:
-        """Return the motion at which the driver has no effort; None where it is not unique.
+    def free(self, held: Number | None = None, grown: int | None = None) -> FreeMotion | None:
+        """Return a motion at which the driver has no effort; None where there is none.
 
-        Normal forces of which a sign is `held` count by it. A second motion is sought among all solutions if up to so
-        many normal forces act, `grown`.
+        Normal forces of which a sign is `held` count by it. With a number of normal forces, `grown`, it is None too
+        where there are several: another is sought, if up to so many act among all solutions.
         """
         if not (self.inertia and np.isfinite(self.push)):
             # nothing is known at speeds that are no numbers
@@ -128,11 +127,12 @@ class NormalForceState:
         first = self.push / self.inertia
         joint = PoseInfluence(self.layout, self.own + first * self.second, self.grown, self.senses, held)
         weights = None if self.is_mild else joint.weights
-        found = joint.solution(weights) if self.is_mild or weights is not None else None
+        sure = self.is_mild or weights is not None
+        found = joint.solution(weights) if sure or grown is None else None
         if found is not None:
             a = first + float(self.along.dot(found.sizes)) / self.inertia
             return FreeMotion(a, found.sizes, found.components)
-        sizes = self._searched(joint, grown)
+        sizes = self._searched(joint, grown or 0)
         return None if sizes is None else FreeMotion(first + float(self.along.dot(sizes)) / self.inertia, sizes)
 
     @property
@@ -263,8 +263,7 @@ class FrictionTable(TabulatedChart):
         found = self._in_table(state.time, float(state.values[0]), float(state.speeds[0]), self.direction)
         if found is not None:
             return self._free(found.normal, state.time, self.sides)
-        second = np.array([[0.0, 1.0]])
-        return self._free(self._solved(state, state.speeds, second, self.direction), state.time)
+        return self._free(self._solved(state, self.direction), state.time)
 
     def friction_powers(self, time: float, values: Number, speeds: Number) -> Number:
         """Return the powers of all frictions, never positive."""
@@ -275,7 +274,7 @@ class FrictionTable(TabulatedChart):
         found = self._in_table(time, value, speed, way)
         if found is None:
             state = self.state(time, values, speeds)
-            normal = self._solved(state, state.speeds, np.array([[0.0, 1.0]]), way)
+            normal = self._solved(state, way)
             return normal.along * self._free(normal, time).sizes * speed
         return found.normal.along * self._free(found.normal, time).sizes * speed
 
@@ -291,11 +290,11 @@ class FrictionTable(TabulatedChart):
         way = float(np.sign(speeds[0])) or self.direction_from_rest(time, values)
         self.direction, self.rests = way or self.direction, way == 0.0
         if way:
-            self._check_only_motion(time, values, speeds)
+            self.check_only_motion(time, values, speeds)
         self._enter(time, values, speeds)
         return way != 0.0
 
-    def _check_only_motion(self, time: float, values: Number, speeds: Number) -> None:
+    def check_only_motion(self, time: float, values: Number, speeds: Number) -> None:
         """Raise NotUniqueMotion where Coulomb's law has a second motion."""
         here = self._in_table(time, float(values[0]), float(speeds[0]), self.direction)
         if here is not None and not here.normal.is_mild and here.normal.free(None, GROWN) is None:
@@ -304,7 +303,6 @@ class FrictionTable(TabulatedChart):
     def accept(self, time: float, values: Number, speeds: Number) -> None:
         """Update the configuration at an accepted state."""
         super().accept(time, values, speeds)
-        self._check_only_motion(time, values, speeds)
         if self.ahead is None or self.has_left:
             self._enter(time, values, speeds)
 
@@ -404,7 +402,8 @@ class FrictionTable(TabulatedChart):
         rows = piece.terms.dot(basis)
         others = pressed.layout.none
         if self.has_others:
-            more = self.wrenches_of_others(self.loaded_at(piece, basis, time, np.array([value]), speed))
+            at = self.loaded_at(piece, basis, time, np.array([value]), speed)
+            more = self.wrenches_of_others(at, self.touched)
             if more is None:
                 return None
             others = more
@@ -414,34 +413,23 @@ class FrictionTable(TabulatedChart):
         found = self._in_table(time, float(values[0]), 0.0, way)
         if found is not None:
             return found.normal
-        return self._solved(self.state(time, values, np.zeros(1)), np.zeros(1), np.array([[0.0, 1.0]]), way)
+        return self._solved(self.state(time, values, np.zeros(1)), way)
 
-    def _solved(self, state: DriverState, speeds: Number, second: Number, way: float) -> NormalForceState:
-        """Return the normal forces and the driver's effort of a solved state, from two accelerations."""
-        at = self._loaded(state, speeds, second)
-        block = block_with_friction(at, self.contacts, at.known(True))
-        none = np.zeros((len(self.contacts), 2))
-        effort = block.effort(self.free[0], none)
-        each = np.eye(len(self.contacts))
-        along = -np.array([(block.effort(self.free[0], none + one[:, None]) - effort)[0] for one in each])
-        own, by = block.influence.own, block.influence.by[..., 0]
-        way_senses = way * self._senses(state)
-        owners = np.repeat(np.arange(len(by)), np.diff(block.influence.starts, append=len(own)))
-        vectors = np.flatnonzero(np.any(own.imag != 0.0, axis=1) | np.any(by.imag != 0.0, axis=0))
-        layout = NormalForceComponents(owners.tolist(), vectors.tolist())
-        return NormalForceState(layout, layout.split(own[:, 0]), layout.split(own[:, 1] - own[:, 0]), layout.split(by),
-                                way_senses, float(effort[1] - effort[0]), -float(effort[0]), along)  # fmt: skip
+    def _solved(self, state: DriverState, way: float) -> NormalForceState:
+        """Return the normal forces and the driver's effort of a solved state: the rows of the table, for its pose."""
+        at, motion = state.loaded, unit_motion(state, self.start)
+        layout = replace(self._layout, touched=self._touched_by(at))
+        rows, first = layout.terms(motion)[:, 0], len(DRIVE_SCALES)
+        powers, others = rows[first : first + len(self.contacts)], self.wrenches_of_others(at, layout.touched)
+        rests = np.abs(powers) <= AT_REST * _fastest(layout, motion)
+        senses = np.where(rests, 0.0, np.sign(powers))
+        assert others is not None
+        return layout.state(rows, float(state.speeds[0]), way * senses, others, False).normal
 
-    def _senses(self, state: DriverState) -> Number:
-        """Return the sense in which each pair slides as the driver's coordinate grows."""
-        at = self._loaded(state, np.ones(1), np.zeros((1, 1)))
-        rates = np.array([float(np.ravel(contact.sliding(at))[0]) for contact in self.contacts])
-        least = AT_REST * float(np.ravel(speed_of_fastest(at))[0])
-        return np.where(np.abs(rates) > least, np.sign(rates), 0.0 * rates)
-
-    def _loaded(self, state: DriverState, speeds: Number, second: Number) -> LoadedBlock:
-        motion = accelerated_motion(state, self.start, speeds, second)
-        return next(iter(loaded_blocks(motion)))
+    @cached_property
+    def _layout(self) -> ForceLayout:
+        """The layout of the rows."""
+        return _layout(self, self.start)
 
 
 class TabulatedState(NamedTuple):
@@ -603,7 +591,7 @@ class ContactForces:
         known = [1.0, second, speed * speed, *sizes]
         if chart.has_others or chart.closed:
             seen = chart.seen(time, values, speeds)
-            others = chart.wrenches_of_others(seen.loaded)
+            others = chart.wrenches_of_others(seen.loaded, self.layout.touched)
             if others is None:
                 return None
             known += [*others[2:], *self._at_stops(chart, seen, time, values, speeds)]
@@ -626,8 +614,7 @@ class ContactForces:
             rows = piece.terms[first:].dot(piece.basis(inside))
         else:
             state = chart.state(0.0, np.array([value]), np.ones(1))
-            motion = accelerated_motion(state, chart.start, state.speeds, np.zeros((1, 1)))
-            rows = self.layout.terms(motion)[first:, 0]
+            rows = self.layout.terms(unit_motion(state, chart.start))[first:, 0]
         found: Number = rows.reshape(-1, len(self.index))
         return found
 

@@ -94,7 +94,7 @@ def _integrate(chart: Chart, state: Number, course: SimulatedCourse, progress: P
     solver = _begun(chart, 0.0, state, course)
     while solver is not None and solver.status == "running":
         before, n = _prepared(chart, solver, course), len(chart.free)
-        _step(solver, course)
+        _step(chart, solver, course)
         if solver.status == "failed":
             changed = _changed(chart, solver, course)
             if changed is None:
@@ -162,16 +162,20 @@ def _after_event(
     return chart, _begun(chart, passed.time, state, course, paced)
 
 
-def _step(solver: Any, course: SimulatedCourse) -> None:
-    """Make a step, a shorter one where friction has no motion, or several, within it."""
+def _step(chart: Chart, solver: Any, course: SimulatedCourse) -> None:
+    """Make a step, a shorter one where friction has no motion, or several, within it or at its end."""
     while True:
-        asked = solver.nfev
+        before, asked = dict(vars(solver)), solver.nfev
         try:
             solver.step()
+            if isinstance(chart, FrictionTable) and solver.status != "failed":
+                chart.check_only_motion(float(solver.t), solver.y[:1], solver.y[1:2])
             course.evaluations += solver.nfev - asked
             return
         except NotUniqueMotion:
-            solver.h_abs = min(solver.h_abs, solver.max_step) / SHORTER
+            tried = min(solver.h_abs if solver.t == before["t"] else solver.t - before["t"], solver.max_step)
+            vars(solver).update(before)
+            solver.h_abs = tried / SHORTER
             if solver.h_abs < STALLED * course.until:
                 raise
 

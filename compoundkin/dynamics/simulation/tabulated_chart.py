@@ -216,23 +216,26 @@ class TabulatedChart(DriverChart):
     def touched(self) -> tuple[str, ...]:
         """The links on which loads that depend on time or speed act."""
         value = [float(np.ravel(v[0])[0]) for name, v in self.start.inputs.drives.items() if name in self.free]
-        at = self.state(0.0, np.array(value), np.zeros(1)).loaded
+        return self._touched_by(self.state(0.0, np.array(value), np.zeros(1)).loaded)
+
+    def _touched_by(self, at: LoadedState) -> tuple[str, ...]:
+        """Return them at a state."""
         links = [link for loads in self.others for load in loads for link, _ in load.wrenches(at)]
         return tuple(dict.fromkeys(link for link in links if link != FRAME))
 
-    def wrenches_of_others(self, at: LoadedState) -> Number | None:
+    def wrenches_of_others(self, at: LoadedState, touched: tuple[str, ...]) -> Number | None:
         """Return the forces of loads that depend on time or speed, and their wrenches by the links they touch."""
-        found = np.zeros(2 + 3 * len(self.touched))
+        found = np.zeros(2 + 3 * len(touched))
         for k, loads in enumerate(self.others):
             for link, wrench in (one for load in loads for one in load.wrenches(at)):
                 if link == FRAME:
                     continue
-                if link not in self.touched:
+                if link not in touched:
                     return None
                 assert at.columns is not None
                 found[k] += np.ravel(at.freed(link, wrench).power(at.columns[link]))[0]
                 force, moment = complex(np.ravel(wrench.force)[0]), float(np.ravel(wrench.moment)[0])
-                first = 2 + 3 * self.touched.index(link)
+                first = 2 + 3 * touched.index(link)
                 found[first : first + 3] += force.real, force.imag, moment
         return found
 
