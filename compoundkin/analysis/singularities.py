@@ -212,7 +212,7 @@ class Singularity(ShortRepr):
         """The drivers' values in words, angles in degrees."""
         driven, size = self.motion.structure.driven_angles, self.motion.size
         lengths = {name: f"{np.round(value / size, 10) * size + 0.0:.7g}" for name, value in self.drivers.items()}
-        angles = {name: f"{np.round(degrees(value), 7) + 0.0:.7g} deg" for name, value in self.drivers.items()}
+        angles = {name: f"{np.round(degrees(value), 7) + 0.0:.7g}°" for name, value in self.drivers.items()}
         return ", ".join(f"{name} {(angles if driven[name] else lengths)[name]}" for name in self.drivers)
 
     @property
@@ -276,10 +276,10 @@ def singularities(what: Motion | Mechanism | Structure, outputs: Sequence[str] =
 
     >>> from compoundkin.files import load
     >>> print(singularities(load("parallelogram"), ["follower.angle"]).text())
-    1 crank 0 deg (pose 0): change point of coupler, follower; 2 branches meet
+    1 crank 0° (pose 0): change point of coupler, follower; 2 branches meet
       branch 1 (followed): crank 1, coupler shifts 30, follower 1
       branch 2: crank 1, coupler -2, follower -3
-    2 crank 180 deg (pose 36): change point of coupler, follower; 2 branches meet
+    2 crank 180° (pose 36): change point of coupler, follower; 2 branches meet
       branch 1 (followed): crank 1, coupler shifts 30, follower 1
       branch 2: crank 1, coupler 0.666667, follower -0.333333
     """

@@ -269,7 +269,7 @@ def drive_figures(forces: Forces, driver: str | None = None) -> DriveFigures:
     >>> found.peak_effort.round(9), found.rms_effort.round(6), found.peak_power.round(9)
     (array([20.]), array([14.142136]), array([60.]))
     >>> print(found.text().splitlines()[4])
-    greatest torque       20  N m        at arm 0 deg
+    greatest torque       20  N m        at arm 0°
     """
     course = driver_course(forces, driver)
     (mean_effort, mean_power), (rms_effort, rms_power) = course.means, course.mean_squares

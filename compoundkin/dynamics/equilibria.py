@@ -95,7 +95,7 @@ class EquilibriumPositions(Sequence[EquilibriumPosition], ShortRepr):
     def _row(self, one: EquilibriumPosition) -> str:
         driven = solving_order_of(self.mechanism).structure.driven_angles
         size = solving_order_of(self.mechanism).size
-        told = (f"{name} {np.round(degrees(v), 9) + 0.0:.6g} deg" if driven[name]
+        told = (f"{name} {np.round(degrees(v), 9) + 0.0:.6g}°" if driven[name]
                 else f"{name} {np.round(v / size, 12) * size + 0.0:.6g}" for name, v in one.values.items())  # fmt: skip
         return f"{', '.join(told)}: {one.stability}"
 
@@ -121,8 +121,8 @@ def equilibria(mechanism: Mechanism, values: Any = None) -> EquilibriumPositions
     >>> parts = link("frame", A=0), link("arm", A=0, B=1), drive("arm"), mass("arm", 2, at="B"), gravity(0, -9.81)
     >>> arm = Mechanism("Pendulum", *parts, units={"length": "m", "mass": "kg", "force": "N"})
     >>> print(equilibria(arm).text())
-    arm 90 deg: unstable
-    arm 270 deg: stable
+    arm 90°: unstable
+    arm 270°: stable
     """
     _check_equilibrium(mechanism)
     with warnings.catch_warnings(action="ignore", category=UnassembledPoses):

@@ -64,7 +64,7 @@ class Harmonics(ShortRepr):
         columns = (own, self.backward[k]) if self.is_vector else (own,)
         other = customary_unit(self.unit)
         units = [(self.unit, 1.0), *([other] if other and not self.is_vector else [])]
-        yield (f"{self.name} [{', '.join(unit for unit, _ in units)}, deg]",)
+        yield (f"{self.name} [{', '.join(unit for unit, _ in units)}, °]",)
         yield "order", *words[:1], *[""] * (len(units) - 1), *words[1:]
         least = ROUNDING * max(float(np.max(np.abs(one))) for one in columns)
         for order in range(len(columns[0])):
@@ -115,7 +115,7 @@ def harmonics(of: Forces | Motion, name: str = SHAKING, *, orders: int = 6, driv
     >>> harmonics(solve(crank), "B.x", orders=2).amplitude.round(12).tolist()         # 3 + 2 cos
     [[3.0, 2.0, 0.0]]
     >>> print(harmonics(solve(crank), "B.x", orders=1).text())
-    B.x [length, deg]
+    B.x [length, °]
     order  amplitude  phase
     0              3      0
     1              2      0

@@ -112,7 +112,7 @@ class IntermittentMotion:
     def __repr__(self) -> str:
         title, low, high = self.phases[0].motion.mechanism.title, *np.degrees(self.engaged)
         phases = count_phrase(len(self.phases), "phase")
-        return f"IntermittentMotion({title!r}: engaged from {low:.6g} to {high:.6g} deg, {phases})"
+        return f"IntermittentMotion({title!r}: engaged from {low:.6g} to {high:.6g}°, {phases})"
 
 
 @checked
@@ -140,7 +140,7 @@ def intermittent_motion(
     >>> from compoundkin.files import load
     >>> found = intermittent_motion(load("geneva-wheel"), np.deg2rad([0, 90, 360, 450]))
     >>> found, found.slots
-    (IntermittentMotion('Geneva wheel with four slots, while it moves': engaged from -45 to 45 deg, 4 phases), 4)
+    (IntermittentMotion('Geneva wheel with four slots, while it moves': engaged from -45 to 45°, 4 phases), 4)
     >>> found.table("wheel.angle").shown["wheel.angle"].values.round(6).tolist()
     [0.0, -45.0, -45.0, -45.0, -45.0, -45.0, -90.0, -135.0, -135.0, -135.0]
     """

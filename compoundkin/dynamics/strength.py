@@ -21,7 +21,7 @@ from compoundkin.dynamics.reactions.link_wrench import INERTIA, WEIGHT, LinkWren
 from compoundkin.kinematics.extremes import extended_to
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import Quantity, Table, table_of
-from compoundkin.model.attributes import VALUE
+from compoundkin.model.attributes import DEGREES, VALUE, with_unit
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.units import Units
 
@@ -197,11 +197,12 @@ def _shown(value: float, largest: float) -> float:
 
 
 def pose_text(motion: Motion, design: int, pose: int) -> str:
-    """Return "crank 35 deg", the drivers at a pose."""
+    """Return "crank 35°", the drivers at a pose."""
     shape, texts = motion.failed.shape, []
     for name, drive in motion.drives.items():
         value = np.broadcast_to(drive.value, motion.shape).reshape(shape)[design, pose]
-        texts.append(f"{name} {np.rad2deg(value) if drive.is_angle else value:.6g}{' deg' if drive.is_angle else ''}")
+        number = f"{np.rad2deg(value) if drive.is_angle else value:.6g}"
+        texts.append(f"{name} {with_unit(number, DEGREES if drive.is_angle else '')}")
     return ", ".join(texts) or f"pose {pose}"
 
 

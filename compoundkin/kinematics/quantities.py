@@ -40,9 +40,9 @@ from compoundkin.model.attributes import (
     Kind,
     coordinate_dimension,
     motion_figure,
+    typeset_unit,
     unit_of,
     vector_and_part,
-    with_superscripts,
 )
 from compoundkin.model.geometry import FRAME
 
@@ -79,7 +79,7 @@ class Quantity:
         >>> Quantity("G.acceleration", "mm/s^2", np.zeros((1, 1))).label
         'G.acceleration [mm/s²]'
         """
-        return f"{self.name} [{with_superscripts(self.unit)}]".lstrip() if self.unit else self.name
+        return f"{self.name} [{typeset_unit(self.unit)}]".lstrip() if self.unit else self.name
 
     @property
     def shown(self) -> Self:

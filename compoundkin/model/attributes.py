@@ -18,6 +18,8 @@ OF_FORCES: tuple[Dimension, ...] = ("force", "moment", "power")
 PER_SECOND = ("", "/s", "/s^2", "/s^3")
 HIGHEST_ORDER = len(PER_SECOND) - 1
 RADIANS, DEGREES = "rad", "deg"
+# Degrees as people read them; files that programs read have the word.
+DEGREE_SIGN = "°"
 SUPERSCRIPTS = {"^2": "²", "^3": "³"}
 
 
@@ -154,11 +156,34 @@ def coordinate_dimension(is_angle: bool) -> Dimension:
 
 def unit_suffix(is_angle: bool, length: str) -> str:
     """Return the unit of a coordinate as it follows a number. It is empty where lengths have none."""
-    return "°" if is_angle else f" {length}".rstrip()
+    return with_unit("", DEGREES if is_angle else length)
 
 
-def with_superscripts(unit: str) -> str:
-    """Return a unit with its powers raised."""
+def with_unit(number: str, unit: str) -> str:
+    """Return a number with its unit as texts have it: degrees as a sign, without a blank.
+
+    >>> with_unit("30", "deg"), with_unit("30", "mm"), with_unit("30", "")
+    ('30°', '30 mm', '30')
+    """
+    return f"{number}{DEGREE_SIGN}" if unit in (DEGREES, DEGREE_SIGN) else f"{number} {unit}".rstrip()
+
+
+def plain_unit(unit: str) -> str:
+    """Return a unit as terminals have it: with the sign of degrees, powers as they are typed.
+
+    >>> plain_unit("deg"), plain_unit("deg/s"), plain_unit("mm/s^2")
+    ('°', '°/s', 'mm/s^2')
+    """
+    return unit.replace(DEGREES, DEGREE_SIGN, 1) if unit in (DEGREES, f"{DEGREES}/s", f"{DEGREES}/s^2") else unit
+
+
+def typeset_unit(unit: str) -> str:
+    """Return a unit as pages and pictures have it: with the sign of degrees, and raised powers.
+
+    >>> typeset_unit("deg"), typeset_unit("mm/s^2")
+    ('°', 'mm/s²')
+    """
+    unit = plain_unit(unit)
     for plain, raised in SUPERSCRIPTS.items():
         unit = unit.replace(plain, raised)
     return unit

@@ -19,7 +19,7 @@ from compoundkin.base.errors import suppress_pose_warnings
 from compoundkin.base.version import VERSION
 from compoundkin.kinematics.configuration import label
 from compoundkin.kinematics.quantities import ASSEMBLED
-from compoundkin.model.attributes import DEGREES, component_names, unit_suffix
+from compoundkin.model.attributes import component_names, unit_suffix
 from compoundkin.studies.responses.assembled_range import AssembledRange, assembled_range, failure, is_misfit
 from compoundkin.studies.responses.designs import Designs, StudiedPath, designs_at_once
 from compoundkin.studies.responses.response import Response
@@ -222,8 +222,7 @@ def _driver_values(designs: Designs) -> tuple[str, list[str], str]:
     ((name, value),) = moving.items()
     is_angle = designs.path.reference.structure.driven_angles[name]
     shown = np.rad2deg(value[0]) if is_angle else value[0]
-    unit = f" {DEGREES}" if is_angle else unit_suffix(False, designs.path.reference.mechanism.unit)
-    return name, [f"{one:.6g}" for one in shown], unit
+    return name, [f"{one:.6g}" for one in shown], unit_suffix(is_angle, designs.path.reference.mechanism.unit)
 
 
 def versions(program: StudyProgram) -> dict[str, str]:

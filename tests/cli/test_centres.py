@@ -68,7 +68,7 @@ def test_primary_centres_name_their_pairs_and_come_first(run: Run) -> None:
 
 
 def test_without_a_pose_it_is_the_first_of_the_file(run: Run) -> None:
-    assert run("centres", "stephenson-ii-driven-at-binary").stdout.count("At crank 107 deg.") == 1
+    assert run("centres", "stephenson-ii-driven-at-binary").stdout.count("At crank 107°.") == 1
 
 
 def test_several_drivers_are_named(run: Run) -> None:
@@ -76,7 +76,7 @@ def test_several_drivers_are_named(run: Run) -> None:
     result = run("centres", "3-rrr", *given, "--format", "json")
     assert result.exit_code == 0
     text = json.loads(result.stdout)["sections"]["centres"]["blocks"][0]["text"]
-    assert text.startswith("At crank-1 80 deg, crank-2 200 deg and crank-3 335 deg.")
+    assert text.startswith("At crank-1 80°, crank-2 200° and crank-3 335°.")
     assert table(result, "velocities")["crank-1"]["as solved"] == pytest.approx(2.0)
 
 

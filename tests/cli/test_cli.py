@@ -265,7 +265,7 @@ def test_solve_with_unassembled_poses_prints_them_masked_and_explains(run: Run, 
     assert len(found) == 73
     assert sum(row["assembled"] == "False" for row in found) == 49
     assert all((row["rocker [deg]"] == "nan") == (row["assembled"] == "False") for row in found)
-    assert "Between crank 56.1036448 and 303.896355 deg, the RRR group of coupler and rocker" in result.stderr
+    assert "Between crank 56.1036448 and 303.896355°, the RRR group of coupler and rocker" in result.stderr
 
 
 def test_tables_in_every_format_say_the_same(run: Run, tmp_path: Path) -> None:

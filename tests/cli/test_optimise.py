@@ -26,7 +26,7 @@ def test_a_rocker_swings_as_far_as_it_should(tmp_path: Path) -> None:
     wanted = "--free", "crank.B.x=1:3", "--target", "rocker.angle.stroke=60", "--full-turn"
     done = run(*CRANK_ROCKER, *wanted, "-o", str(path))
     assert done.exit_code == 0
-    assert "rocker.angle.stroke 60 deg" in done.stdout
+    assert "rocker.angle.stroke 60°" in done.stdout
     found = ck.load(path)
     frame, crank, coupler, rocker = (
         abs(points[1] - points[0]) for link in found.links.values() for points in [list(link.points.values())]
@@ -41,7 +41,7 @@ def test_bounds_and_constraints_hold() -> None:
         "--at-least", "rocker.angle.stroke=58", "--format", "json",
     )  # fmt: skip
     assert done.exit_code == 0
-    assert "rocker.angle.stroke at least 58 deg" in done.stdout
+    assert "rocker.angle.stroke at least 58°" in done.stdout
     asked = "--free", "rocker.C.x=3.9:4.1", "--least", "rocker.angle.stroke", "--at-most", "rocker.angle.stroke=20"
     with warnings.catch_warnings():
         warnings.simplefilter("default")

@@ -304,12 +304,12 @@ def test_an_analysis_of_forces_says_what_holds_in_simulations_alone() -> None:
         units={"length": "m", "mass": "kg", "force": "N"},
     )  # fmt: skip
     text = " ".join(ck.force_analysis(ck.solve(arm, np.deg2rad([0.0, 90.0, 360.0]), speed=1.0)).text().split())
-    assert "wall is passed by up to 270 deg: a rigid stop holds in simulations alone" in text
+    assert "wall is passed by up to 270°: a rigid stop holds in simulations alone" in text
     assert "nothing held by hook" in text
     assert "buffer is passed" not in text
     assert "floor is passed" not in text
     swung = ck.simulate(arm, start={"arm": (1.2, 2.0)}, until=1.0)
-    assert "its high end 90 deg" in " ".join(swung.text().split())
+    assert "its high end 90°" in " ".join(swung.text().split())
 
 
 def test_an_impact_at_the_start() -> None:

@@ -450,7 +450,7 @@ def test_tables_and_reports_tell_the_time() -> None:
     motion = ck.solve(four_bar(law=LAWS["program"]), time=[0.0, 0.5, 1.0])
     assert motion.to_pandas()["time"].tolist() == [0.0, 0.5, 1.0]
     text = ck.report(motion).text()
-    assert "crank moves by a program of 2 s, from 17.1887 deg: 3-4-5 rise by 57.2958 deg" in " ".join(text.split())
+    assert "crank moves by a program of 2 s, from 17.1887°: 3-4-5 rise by 57.2958°" in " ".join(text.split())
     assert "time" in motion.to_pandas().columns
     assert "time" not in ck.solve(four_bar()).to_pandas().columns
 

@@ -211,8 +211,8 @@ def test_designs_are_lost_between_the_poses_as_grashof_tells() -> None:
     assert np.array_equal(rows["assembled"], longest & shortest)
     told = rows["reason"][~rows["assembled"]]
     assert all(text.startswith("RRR(coupler) cannot be assembled ") for text in told)
-    assert "RRR(coupler) cannot be assembled between crank 180 and 190 deg" in told
-    assert "RRR(coupler) cannot be assembled at crank 180 to 190 deg" in told
+    assert "RRR(coupler) cannot be assembled between crank 180 and 190°" in told
+    assert "RRR(coupler) cannot be assembled at crank 180 to 190°" in told
     assert set(rows["circuit"][~rows["assembled"]]) == {"RRR(coupler)+-"}
     assert set(rows["circuit"][rows["assembled"]]) == set(rows["branch"]) == {"RRR(coupler)-"}
     assert not rows["order_defect"].any()

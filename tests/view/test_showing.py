@@ -170,7 +170,7 @@ def test_what_is_made_to_be_seen_says_in_short_what_it_is() -> None:
     title = repr(mechanism.title)
     assert repr(ck.draw(motion)).startswith(f"Picture({title}, ")
     assert repr(ck.animate(motion)) == f"Animation({title}, 72 frames, 4.32 s)"
-    assert repr(ck.plot(motion, "rocker.angle")) == "Plot('rocker.angle [deg]')"
+    assert repr(ck.plot(motion, "rocker.angle")) == "Plot('rocker.angle [°]')"
     assert repr(ck.page(motion)).startswith(f"Page({title}, ")
     assert repr(ck.report(motion)).startswith(f"Report({title}: about, links, ")
 

@@ -12,7 +12,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Extreme, Measure, Places, extremes
 from compoundkin.kinematics.extremes.stretches import SAME_PLACE
 from compoundkin.kinematics.quantities import Quantity, whole_and_part
-from compoundkin.model.attributes import GREATEST, LEAST, TIME, coordinate_dimension, unit_of
+from compoundkin.model.attributes import GREATEST, LEAST, TIME, coordinate_dimension, unit_of, with_unit
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,10 +54,10 @@ def displayed_number(one: Quantity) -> str:
     """Return a quantity of one value in words, angles in degrees.
 
     >>> displayed_number(Quantity("crank", "rad", np.pi))
-    'crank 180 deg'
+    'crank 180°'
     """
     found = one.shown
-    return f"{found.name} {float(found.values) + 0.0:.6g} {found.unit}".rstrip()
+    return f"{found.name} {with_unit(f'{float(found.values) + 0.0:.6g}', found.unit)}"
 
 
 def quantity_number(one: Quantity) -> float:

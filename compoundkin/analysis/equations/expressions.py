@@ -95,7 +95,7 @@ class EquationNotation:
 
     def angle(self, value: float) -> str:
         """Write an angle in degrees."""
-        return rf"{np.degrees(value):.6g}^\circ" if self.is_latex else f"{np.degrees(value):.6g} deg"
+        return rf"{np.degrees(value):.6g}^\circ" if self.is_latex else f"{np.degrees(value):.6g}°"
 
     def turned(self, length: str, angle: str) -> str:
         """Write a vector of a length, turned by an angle."""

@@ -16,7 +16,7 @@ from compoundkin.base.extremes import Windows
 from compoundkin.kinematics.extremes.motion_between import between, inputs_between, times_between, times_of
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity, whole_and_part
-from compoundkin.model.attributes import DEGREES, LENGTH, SPEED, Dimension, derivative_order
+from compoundkin.model.attributes import DEGREES, LENGTH, SPEED, Dimension, derivative_order, with_unit
 from compoundkin.model.attributes import PARTS as VALUE_PARTS
 from compoundkin.model.laws.law_numbers import derivative_jumps
 from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
@@ -312,8 +312,9 @@ class Places(ShortRepr):
         texts = []
         for name, values in self.drives.items():
             is_angle = self.motion.drives[name].is_angle
+            unit = DEGREES if is_angle else self.motion.mechanism.unit
             value = np.round(degrees(values[k]), 9) if is_angle else values[k]
-            texts.append(f"{name} {value + 0.0:.6g} {DEGREES if is_angle else self.motion.mechanism.unit}".rstrip())
+            texts.append(f"{name} {with_unit(f'{value + 0.0:.6g}', unit)}")
         return ", ".join(texts)
 
     def some(self, which: Number) -> Places:

@@ -111,7 +111,7 @@ class PairLoad(Load):
 
     def place_text(self, coordinate: float) -> str:
         """Return a value of its coordinate as text, angles in degrees."""
-        return f"{np.rad2deg(coordinate):.6g} deg" if self.turns else f"{coordinate:.6g}"
+        return f"{np.rad2deg(coordinate):.6g}°" if self.turns else f"{coordinate:.6g}"
 
     def speed_at(self, at: LoadedPoses) -> Number:
         """Return the rate of its coordinate."""

@@ -118,7 +118,7 @@ def transmits(link: str, least: float) -> DesignConstraint:
     Source: H. Alt, 1932.
 
     >>> transmits("rocker", 0.7).description
-    'rocker.transmission_angle at least 40.107 deg'
+    'rocker.transmission_angle at least 40.107°'
     """
     if not 0.0 < least < np.pi / 2:
         what, remedy = f"{least:g} is not between 0 and pi / 2", "give radians, as compoundkin.deg(40)"

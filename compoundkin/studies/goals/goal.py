@@ -21,10 +21,10 @@ def value_text(name: str, value: float) -> str:
     """Return the value of a figure or quantity in words: degrees for angles.
 
     >>> value_text("rocker.angle.stroke", np.pi / 3), value_text("ram.stroke", 45)
-    ('60 deg', '45')
+    ('60°', '45')
     """
     is_angle = is_angle_word(motion_figure(name)[0].rpartition(".")[2])
-    return f"{degrees(value):g} deg" if is_angle else f"{value:g}"
+    return f"{degrees(value):g}°" if is_angle else f"{value:g}"
 
 
 @dataclass(frozen=True)

@@ -12,11 +12,11 @@ from math import isfinite
 
 import numpy as np
 
-from compoundkin.model.attributes import DEGREES, with_superscripts
+from compoundkin.model.attributes import typeset_unit
 from compoundkin.structure import Structure, roman
 from compoundkin.view.page.markup import breakable, element, lines, safe, screen_reader_text
 from compoundkin.view.report.report_data import Cell, Column, TableBlock
-from compoundkin.view.report.wording import column_texts, listed
+from compoundkin.view.report.wording import UNIT_HEADS, column_texts, listed
 from compoundkin.view.sketch.scene import link_groups
 from compoundkin.view.sketch.sketch_style import COLOURS
 from compoundkin.view.sketch.svg import link_names
@@ -25,8 +25,6 @@ Links = tuple[str, ...]
 RESULTS = {True: ("good", "✓", "pass"), False: ("bad", "✗", "FAIL")}
 # Cells with more letters than this are broken into lines, and get room for them.
 LONG = 24
-# The column of units.
-UNIT = "unit"
 
 
 @dataclass(frozen=True)
@@ -141,17 +139,12 @@ def _head(shown: HtmlTable) -> str:
 
 def _heading(column: Column, shown: HtmlTable) -> str:
     name = breakable(column.name) if column.name else screen_reader_text("result")
-    unit = f' <span class="unit">[{safe(_signs(column.unit))}]</span>' if column.unit else ""
+    unit = f' <span class="unit">[{safe(typeset_unit(column.unit))}]</span>' if column.unit else ""
     button = element("button", f"{name}{unit}", type="button", class_="sort")
     kind = "number" if column.is_number else None
     quantity = f' data-quantity="{safe(column.name)}"' if shown.poses else ""
     links = _links_attribute(shown.names.about(column.name))
     return f'<th scope="col"{class_attribute(kind)}{links}{quantity}>{button}</th>'
-
-
-def _signs(unit: str) -> str:
-    """Return a unit as a page has it everywhere: with the sign of degrees, and raised powers."""
-    return "°" if unit == DEGREES else with_superscripts(unit)
 
 
 def _body(shown: HtmlTable) -> str:
@@ -209,7 +202,7 @@ def cell_html(column: Column, cell: Cell, text: str) -> str:
         inside = f'<span class="{result}"><span aria-hidden="true">{mark}</span> {word}</span>'
         return f'<td data-sort="{int(cell)}" data-copy="{word}">{inside}</td>'
     kind = "number" if column.is_number else "long" if len(text) > LONG else None
-    inside = "<br>".join(map(safe, (_signs(text) if column.name == UNIT else text).split("\n")))
+    inside = "<br>".join(map(safe, (typeset_unit(text) if column.name in UNIT_HEADS else text).split("\n")))
     return f"<td{class_attribute(kind)}{''.join(_exact_attributes(column, cell, text))}>{inside}</td>"
 
 

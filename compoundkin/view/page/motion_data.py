@@ -31,7 +31,13 @@ from compoundkin.view.page.markup import component_values, packed_doubles, packe
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.sketch import force_arrows
 from compoundkin.view.sketch.centre_pictures import centre_number
-from compoundkin.view.sketch.force_arrows import KINDS, ForceCourse, drawn_force_courses, force_scales
+from compoundkin.view.sketch.force_arrows import (
+    KINDS,
+    ForceCourse,
+    drawn_force_courses,
+    drawn_moment_courses,
+    force_scales,
+)
 from compoundkin.view.sketch.kinematic_sketch import MovingSketch, moving_sketch
 from compoundkin.view.sketch.vectors import KINDS_OF_VECTOR, SHORTEST
 
@@ -242,27 +248,43 @@ def _lines(centres: Centres, index: Mapping[tuple[str, ...], int]) -> Iterator[l
 
 
 def force_data(sketch: MovingSketch, forces: Forces, links: Mapping[str, int], chosen: Number) -> dict[str, Any]:
-    """Return the arrows of forces at some poses, to one scale, each with place, force, kind and text."""
+    """Return the arrows of forces and the arcs of moments at some poses, each with place, kind, name and text.
+
+    Arrows are to one scale, arcs to none. Empty where nothing acts.
+    """
     courses = drawn_force_courses(forces, sketch.scene, sketch.design)
+    turning = drawn_moment_courses(forces, sketch.scene, sketch.design)
     scales = force_scales(forces, sketch.window.diagonal, courses)
-    if not scales:
+    if not scales and not turning:
         return {}
-    one = scales[0]
+    kinds = dict.fromkeys((*(scale.kind for scale in scales), *(one.shown.kind for one in turning)))
+    arrows, arcs = ([_placed_course(forces, one, links, chosen, sketch.design) for one in found]
+                    for found in (courses if scales else (), turning))  # fmt: skip
+    for one, data in zip(courses, arrows, strict=False):
+        force = one.force[chosen]
+        data |= {"name": one.shown.name, "force": [packed_floats(force.real), packed_floats(force.imag)]}
+    for one, data in zip(turning, arcs, strict=True):
+        data |= {"name": one.shown.turning, "moment": packed_floats(one.moment[chosen])}
+        ends = [[at.real, at.imag] for at in sketch.scene.points[one.shown.link].values()]
+        data |= {"body": links[one.shown.link], "ends": ends, "driver": one.shown.is_driver}
+    per_unit, amount, text = (scales[0].per_unit, scales[0].amount, scales[0].text) if scales else (0.0, 0.0, "")
     return {
-        "scale": one.per_unit,
-        "text": one.text,
-        "length": one.amount * one.per_unit,
+        "scale": per_unit,
+        "text": text,
+        "length": amount * per_unit,
         "shortest": force_arrows.SHORTEST,
         "unit": forces.units.force,
-        "kinds": {scale.kind: KINDS[scale.kind] for scale in scales},
-        "arrows": [_force_arrow(forces, course, links, chosen, sketch.design) for course in courses],
+        "turning": forces.units.moment,
+        "kinds": {kind: KINDS[kind] for kind in kinds},
+        "arrows": arrows,
+        "moments": arcs,
     }
 
 
-def _force_arrow(
+def _placed_course(
     forces: Forces, course: ForceCourse, links: Mapping[str, int], chosen: Number, design: int
 ) -> dict[str, Any]:
-    """Return one arrow, at a point of its link where it is fixed there, else at a place for every pose."""
+    """Return what acts somewhere: at a point of its link where it is fixed there, else at a place for every pose."""
     link, shown = forces.links[course.shown.link], course.shown
 
     def row(values: Any) -> Number:
@@ -271,9 +293,7 @@ def _force_arrow(
 
     own = (course.at - row(link.origin.position)) * np.exp(-1j * row(link.angle))
     known = own[np.isfinite(own)]
-    force = course.force[chosen]
-    packed = [packed_floats(force.real), packed_floats(force.imag)]
-    found = {"name": shown.name, "told": shown.description, "kind": shown.kind, "force": packed}
+    found = {"told": shown.description, "kind": shown.kind}
     if len(known) and np.max(np.abs(known - known[0])) <= FIXED_PLACE * forces.motion.size:
         return {**found, "link": links[shown.link], "x": float(known[0].real), "y": float(known[0].imag)}
     at = course.at[chosen]

@@ -9,7 +9,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.dynamics.strength import BENDING, NORMAL, SHEAR, BarForces, Strength, pose_text
-from compoundkin.model.attributes import with_superscripts
+from compoundkin.model.attributes import typeset_unit
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.canvas import PointLabel, value_text
 from compoundkin.view.plot.plot_style import GREY, INK, SMALL_PRINT, Plot
@@ -92,14 +92,12 @@ def _draw_bar(axes: Any, name: str, bar: BarForces, design: int, pose: int | Non
             one.plot(places, greatest, color=colour, linewidth=0.8, zorder=3)
             _mark_extremes(one, bar, what, design, colour, labels)
         one.plot(places, values[shown], color=INK, linewidth=1.7, zorder=4)
-        one.set_ylabel(f"{what} [{with_superscripts(unit)}]")
+        one.set_ylabel(f"{what} [{typeset_unit(unit)}]")
         canvas.set_round_ticks(one.yaxis, False, canvas.UPWARDS)
         one.margins(x=0.0, y=0.16)
         _mark_letters(one, bar, design)
-    axes[0].set_title(
-        f"{name}, line at {_short(pose_text(motion, design, shown))}\n", loc="left", fontsize=SMALL_PRINT + 1
-    )
-    axes[-1].set_xlabel(f"distance from {bar.letters[0]} [{with_superscripts(units.length)}]")
+    axes[0].set_title(f"{name}, line at {pose_text(motion, design, shown)}\n", loc="left", fontsize=SMALL_PRINT + 1)
+    axes[-1].set_xlabel(f"distance from {bar.letters[0]} [{typeset_unit(units.length)}]")
     canvas.set_round_ticks(axes[-1].xaxis, False, canvas.UPWARDS)
 
 
@@ -117,12 +115,8 @@ def _mark_extremes(axes: Any, bar: BarForces, what: str, design: int, colour: st
     for one, side in zip(ends, (-1j, 1j), strict=True):
         if np.isfinite(one.value) and abs(one.value) > ROUNDING * largest:
             canvas.draw_dots(axes, [one.position], [one.value], colour)
-            text = f"{value_text(one.value)}, {_short(pose_text(bar.motion, design, one.pose))}"
+            text = f"{value_text(one.value)}, {pose_text(bar.motion, design, one.pose)}"
             labels.append(PointLabel(axes, one.position, one.value, text, side, colour))
-
-
-def _short(text: str) -> str:
-    return text.replace(" deg", "°")
 
 
 def _mark_letters(axes: Any, bar: BarForces, design: int) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.model.attributes import with_superscripts
+from compoundkin.model.attributes import typeset_unit
 from compoundkin.view.plot.plot_style import GREY, INK, SHADE, SMALL_PRINT, Plot, colours
 from compoundkin.view.plot.plotted_rows import CONSTANT, Plotted
 
@@ -264,7 +264,7 @@ class AxisScales:
 
         They do not where limits are meant for several units, or an axis cannot be logarithmic.
         """
-        units = list(dict.fromkeys(with_superscripts(one.unit) or "numbers" for one in titles))
+        units = list(dict.fromkeys(typeset_unit(one.unit) or "numbers" for one in titles))
         if self.ylim is not None and len(units) > 1:
             what = f"the panels are in {', '.join(units)}"
             raise InvalidInput(Problem("ylim", what, "draw quantities of one unit, or leave it out"))
@@ -512,8 +512,8 @@ def broken_label(label: str, room: int) -> str:
 
     It is broken behind dots and before its unit, behind underscores where a part is longer than a line.
 
-    >>> broken_label("plate.transmission_angle.least [deg]", 20)
-    'plate.\\ntransmission_angle.\\nleast [deg]'
+    >>> broken_label("plate.transmission_angle.least [°]", 20)
+    'plate.\\ntransmission_angle.\\nleast [°]'
     """
     parts = [one for part in re.findall(r"[^. ]+[. ]*|[. ]+", label) for one in _short_parts(part, room)]
     lines = [""]

@@ -19,7 +19,7 @@ from compoundkin.base.arrays import Number, first_entry
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.forces import Forces, motion_of
 from compoundkin.kinematics import Motion
-from compoundkin.model.attributes import FORCE, LENGTH, PARTS, unit_of, with_superscripts
+from compoundkin.model.attributes import FORCE, LENGTH, PARTS, typeset_unit, unit_of
 from compoundkin.model.geometry import FRAME
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.canvas import PointLabel, value_text
@@ -284,7 +284,7 @@ def hodograph(
         figure, axes = canvas.panels(1, motion.mechanism.title if title is None else title, size or HODOGRAPH)
         draw_curves(axes[0], shared, [one.values for one in vectors], [one.name for one in vectors])
         axes[0].plot([0.0], [0.0], marker="+", markersize=11, color=plot_style.INK, linestyle="none", zorder=6)
-        unit, names_ = with_superscripts(vectors[0].unit), ", ".join(one.name for one in vectors)
+        unit, names_ = typeset_unit(vectors[0].unit), ", ".join(one.name for one in vectors)
         canvas.plane_axes(axes[0], f"{names_}, x [{unit}]", f"y [{unit}]")
         draw_plane_legends(figure, axes, shared, True)
         return canvas.finished(figure, shared.labels)

@@ -72,7 +72,7 @@ def plot(
     >>> from compoundkin.kinematics import solve
     >>> picture = plot(solve(load("six-bar")), "bar.angle", "G.velocity")
     >>> [axes.get_ylabel() for axes in picture.figure.axes]
-    ['bar.angle [deg]', 'G.velocity [mm/s]']
+    ['bar.angle [°]', 'G.velocity [mm/s]']
     """
     motions = [motion_of(one) for one in ([motion] if isinstance(motion, Motion | Forces) else motion)]
     known, scales = names_of_curves(motions, tuple(designs)), AxisScales.checked(xlim, ylim, log)

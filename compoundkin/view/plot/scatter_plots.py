@@ -235,7 +235,7 @@ def pareto(
     >>> free, outputs = {"crank.B.x": (1.8, 2.2)}, ["rocker.angle.stroke", "rocker.angle.least"]
     >>> result = study(load("crank-rocker"), free, outputs, count=64).run()
     >>> pareto(result, *outputs, greatest=["rocker.angle.stroke"]).figure.axes[0].get_xlabel()
-    'rocker.angle.stroke [deg], greatest'
+    'rocker.angle.stroke [°], greatest'
     """
     among = StudyColumns(result)
     upward = _upward((first, second), greatest)

@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
-from compoundkin.model.attributes import GREATEST, component_names, with_superscripts
+from compoundkin.model.attributes import GREATEST, component_names, typeset_unit, with_unit
 from compoundkin.studies.study_program import StudyColumn
 from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
@@ -191,19 +191,17 @@ def value_at(values: Number, pose: int | None) -> float:
 
 
 def place_words(analysis: ToleranceAnalysis, one: OutputTolerance, pose: int | None) -> str:
-    """Return which output it is, and at which pose: "rocker.angle at crank 20 deg"."""
+    """Return which output it is, and at which pose: "rocker.angle at crank 20°"."""
     if pose is None:
         return one.name
     x, _ = horizontal_axis(analysis.motion, None)
-    return (
-        f"{one.name} at {x.name} {value_text(float(x.values[0, pose]), x.scale)} {with_superscripts(x.unit)}".rstrip()
-    )
+    return f"{one.name} at {x.name} {with_unit(value_text(float(x.values[0, pose]), x.scale), typeset_unit(x.unit))}"
 
 
 def value_words(one: OutputTolerance, value: float) -> str:
     """Write a value of an output with its unit, angles in degrees."""
     shown = displayed_values(one.name, one.unit, np.array([value]))
-    return f"{value_text(float(shown.values[0]))} {with_superscripts(shown.unit)}".rstrip()
+    return with_unit(value_text(float(shown.values[0])), typeset_unit(shown.unit))
 
 
 # Bins in a histogram of very many values, and of those with far outliers.

@@ -17,7 +17,7 @@ from compoundkin.base.arguments import checked, real_numbers
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
-from compoundkin.model.attributes import with_superscripts
+from compoundkin.model.attributes import typeset_unit
 from compoundkin.studies.optimisation.optimum import Optimum
 from compoundkin.studies.study_program import StudyColumn
 from compoundkin.studies.study_result import StudyResult
@@ -125,7 +125,7 @@ def bands(
     >>> from compoundkin.studies.tolerances.tolerance import tolerance
     >>> result = tolerance(load("crank-rocker"), {"crank.B": 0.01, "rocker.C": 0.02}, "rocker.angle")
     >>> bands(result).figure.axes[0].get_ylabel()
-    'error of rocker.angle\\n[deg]'
+    'error of rocker.angle\\n[°]'
     """
     said, motion, panels = _panels(result, names, percentiles, relative)
     x, is_input = horizontal_axis(motion, None)
@@ -414,7 +414,7 @@ def contributions(
     >>> from compoundkin.studies.tolerances.tolerance import tolerance
     >>> result = tolerance(load("crank-rocker"), {"crank.B": 0.01, "rocker.C": 0.02}, "rocker.angle")
     >>> [axes.get_xlabel() for axes in contributions(result, "rocker.angle", pose=30).figure.axes]
-    ['share of the variance [%]', 'part of the worst case [deg]']
+    ['share of the variance [%]', 'part of the worst case [°]']
     """
     one = toleranced_output(result, name)
     at = checked_pose(one, pose)
@@ -430,7 +430,7 @@ def contributions(
             axes[1],
             rows,
             rows.parts,
-            f"part of the worst case{f' [{with_superscripts(rows.unit)}]' if rows.unit else ''}",
+            f"part of the worst case{f' [{typeset_unit(rows.unit)}]' if rows.unit else ''}",
             COLOURS[1],
         )
         axes[0].invert_yaxis()

@@ -14,7 +14,7 @@ from compoundkin.analysis.centres.circle_diagram import diagram_of
 from compoundkin.analysis.centres.derivation import derive
 from compoundkin.analysis.centres.instant_centres import LEAST_CONDITIONING
 from compoundkin.base.arrays import degrees
-from compoundkin.model.attributes import unit_of
+from compoundkin.model.attributes import unit_of, with_unit
 from compoundkin.structure import Structure
 from compoundkin.view.report.pose_sample import ROUNDING, Sample
 from compoundkin.view.report.report_data import Block, Cell, Column, FormulaBlock, Paragraph, Section, TableBlock
@@ -120,7 +120,7 @@ def _derived(step: DerivationStep) -> str:
 
 def _pose_text(sample: Sample) -> str:
     at = [
-        f"{d.name} {number_text(float(d.values[0]))}{f' {d.unit}' if d.unit != 'length' else ''}"
+        f"{d.name} {with_unit(number_text(float(d.values[0])), d.unit if d.unit != 'length' else '')}"
         for d in sample.drivers
     ]
     unit = sample.motion.mechanism.unit or "the unit of the file"

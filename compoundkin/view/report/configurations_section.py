@@ -14,6 +14,7 @@ from compoundkin.configurations.circuit_search import Circuits, circuits
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.configuration import Configurations
 from compoundkin.kinematics.solution import first_configuration
+from compoundkin.model.attributes import DEGREES, with_unit
 from compoundkin.structure import Group, Structure
 from compoundkin.view.report.report_data import (
     NOT_SOLVED,
@@ -72,13 +73,13 @@ def configurations_section(found: Configurations) -> Section:
 
 def _drivers_text(structure: Structure, values: Mapping[str, float]) -> str:
     shown = (
-        f"{name} = {_with_unit(structure.driven_angles.get(name, False), value)}" for name, value in values.items()
+        f"{name} = {_value_text(structure.driven_angles.get(name, False), value)}" for name, value in values.items()
     )
     return ", ".join(shown) or "Without a driver"
 
 
-def _with_unit(angle: bool, value: float) -> str:
-    return f"{number_text(float(degrees(value)))} degrees" if angle else number_text(value)
+def _value_text(angle: bool, value: float) -> str:
+    return with_unit(number_text(float(degrees(value))), DEGREES) if angle else number_text(value)
 
 
 def circuits_report(found: Circuits) -> Report:
@@ -155,8 +156,7 @@ class _CircuitSections:
             turns = abs(circuit.winding)
             text = "turns fully" if turns == 1 else f"turns fully, {turns} turns to come back"
             return f"{text}; turns back on the way" if circuit.limits else text
-        unit = " degrees" if self.angle else ""
-        return f"from {self._number(circuit.low)} to {self._number(circuit.high)}{unit}"
+        return f"from {self._number(circuit.low)} to {with_unit(self._number(circuit.high), self.value.unit)}"
 
     def _number(self, value: float) -> str:
         return number_text(self._in_unit(value))

@@ -17,7 +17,7 @@ from compoundkin.analysis.equations.rate_equations import RateEquations, RateSol
 from compoundkin.analysis.equations.reduced_system import pose_values, prescribed_values
 from compoundkin.base.arrays import degrees
 from compoundkin.kinematics import Motion
-from compoundkin.model.attributes import ACCELERATION, DEGREES, VELOCITY, unit_of
+from compoundkin.model.attributes import ACCELERATION, DEGREES, VELOCITY, unit_of, with_unit
 from compoundkin.model.pairs.loop_terms import Implicit, Unknown
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, FormulaBlock, Paragraph, Section, TableBlock
@@ -190,7 +190,7 @@ class PoseNumbers:
 def pose_section(found: LoopEquations, motion: Motion, design: int = 0) -> Section:
     """Return matrix, right-hand sides and solution at the first pose of a design."""
     pose = PoseNumbers(found, motion, design)
-    drivers = [f"{one.name} = {number_text(float(one.values[0]))} {one.unit}" for one in pose.sample.drivers]
+    drivers = [f"{one.name} = {with_unit(number_text(float(one.values[0])), one.unit)}" for one in pose.sample.drivers]
     return Section("pose", f"Numbers at {listed(drivers)}" if drivers else "Numbers", tuple(_pose_blocks(pose)))
 
 
@@ -283,7 +283,7 @@ def _is_same(found: NewtonIterations, size: float, solved: Mapping[str, float]) 
 
 
 def _value_text(own: Unknown, value: float) -> str:
-    return f"{number_text(float(degrees(value)))} deg" if own.is_angle else number_text(value)
+    return with_unit(number_text(float(degrees(value))), DEGREES) if own.is_angle else number_text(value)
 
 
 def _steps_table(found: NewtonIterations, unit: str) -> TableBlock:

@@ -22,6 +22,7 @@ from compoundkin.dynamics.motor_sizing import sizing
 from compoundkin.dynamics.reactions.link_forces import LinkForces
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Measure, extremes
+from compoundkin.model.attributes import with_unit
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.amounts import LoadFunction, LoadTable
 from compoundkin.model.loads.contract import Load
@@ -177,9 +178,8 @@ def _free_body_blocks(sample: Sample, forces: Forces, own: LinkForces) -> Iterat
     column, values = sample.places
     shown = range(sample.poses) if sample.poses <= MOST_POSES else range(1)
     for pose in shown:
-        unit = f" {column.unit}" if column.unit else ""
         more = "" if len(shown) == sample.poses else f", the first of {sample.poses} poses"
-        yield Paragraph(f"At {column.name} {number_text(float(values[pose]))}{unit}{more}:")
+        yield Paragraph(f"At {column.name} {with_unit(number_text(float(values[pose])), column.unit)}{more}:")
         if not sample.assembled[pose]:
             yield Paragraph("It cannot be assembled there.")
             continue

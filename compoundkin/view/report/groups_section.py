@@ -22,6 +22,7 @@ from compoundkin.model.attributes import (
     VELOCITY,
     coordinate_dimension,
     unit_of,
+    with_unit,
 )
 from compoundkin.model.elements import Drive
 from compoundkin.model.geometry import FRAME
@@ -231,7 +232,7 @@ class LawText:
     """The words for a coordinate: an angle, or a length in a unit.
 
     >>> LawText(True, "mm").law(ConstantSpeed(2.0))
-    'at a constant 2 rad/s (19.0986 rpm) from 0 deg at time 0'
+    'at a constant 2 rad/s (19.0986 rpm) from 0° at time 0'
     """
 
     is_angle: bool
@@ -297,7 +298,7 @@ class LawText:
 
     def _value(self, value: Any) -> str:
         shown = degrees(value) if self.is_angle else value
-        return f"{_range_text(shown)} {'deg' if self.is_angle else self.unit}"
+        return with_unit(_range_text(shown), DEGREES if self.is_angle else self.unit)
 
     def _speed(self, value: Any) -> str:
         """Return a speed, a single one in rpm as well."""

@@ -10,6 +10,7 @@ from compoundkin.analysis.interference import Interference, LinkClearance, LinkT
 from compoundkin.base.errors import InvalidInput
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import Quantity
+from compoundkin.model.attributes import with_unit
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Outcome, Paragraph, Section, TableBlock
 from compoundkin.view.report.wording import counted, joined_links, listed, number_text, point_text, sentence
@@ -85,7 +86,7 @@ def touch_sentences(motion: Motion, found: Interference | InvalidInput | None) -
 
 
 def touch_sentence(sample: Sample, touch: LinkTouch) -> str:
-    """Return one touch in words. "crank and frame touch from crank 75.5225 deg to 104.478 deg, first at (0, 7)"."""
+    """Return one touch in words. "crank and frame touch from crank 75.5225° to 104.478°, first at (0, 7)"."""
     layers = f"{'layer' if len(touch.layers) == 1 else 'layers'} {listed(map(str, touch.layers))}"
     two = f"{touch.one} and {touch.other} on {layers}"
     if sample.poses == 1:
@@ -103,7 +104,7 @@ def touch_sentence(sample: Sample, touch: LinkTouch) -> str:
 def _driver_value(driver: Quantity, values: Mapping[str, float]) -> str:
     """Return a driver's value with its unit."""
     value = degrees(values[driver.name]) if driver.is_angle else values[driver.name]
-    return f"{value + 0.0:.9g} {driver.unit}".rstrip()
+    return with_unit(f"{value + 0.0:.9g}", driver.unit)
 
 
 def _columns(sample: Sample) -> tuple[Column, ...]:

@@ -17,7 +17,7 @@ from compoundkin.base.errors import CompoundkinError, InvalidInput
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Extreme, Extremes, Measure, Places, driver_pace, extremes, pieces
 from compoundkin.kinematics.quantities import Quantity
-from compoundkin.model.attributes import DEGREES, LENGTH, RADIANS, TIME, motion_figure, unit_of
+from compoundkin.model.attributes import DEGREES, LENGTH, RADIANS, TIME, motion_figure, unit_of, with_unit
 from compoundkin.structure import decompose, roman
 from compoundkin.view.report.pose_sample import ROUNDING, Sample
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
@@ -75,7 +75,7 @@ def _introduction(sample: Sample) -> str:
     every = "all" if sample.every == 1 else f"every {ordinal_text(sample.every)} of"
     text = f"{every} {counted(sample.poses, 'pose')}" if sample.poses > 1 else "a single pose"
     constant = [driver for driver in sample.drivers if driver not in sample.varying]
-    fixed = [f"{driver.name} = {driver.values[0]:g} {driver.unit}" for driver in constant]
+    fixed = [f"{driver.name} = {with_unit(f'{driver.values[0]:g}', driver.unit)}" for driver in constant]
     missing = " A dash: not assembled." if not sample.assembled.all() else ""
     return f"{sentence(f'{text}; {listed(fixed)}' if fixed else text)}{missing}"
 

@@ -25,6 +25,7 @@ from compoundkin.model.attributes import (
     TRANSMISSION_ANGLE,
     TRANSMISSION_INDEX,
     VELOCITY_RATIO,
+    with_unit,
 )
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.report.report_data import Alert, Block, Cell, Column, Paragraph, Section, TableBlock
@@ -132,7 +133,7 @@ def _dead_points(sample: Sample, found: Characteristics) -> Iterator[Block]:
         figures = tuple((DEAD, *one.output.names[:2]) for one, _ in points)
         yield TableBlock(columns, tuple(rows), figures=figures)
     for limit in found.dead_points:
-        where = f"{place.name} {number_text(first_value(limit.at))} {place.unit}".rstrip()
+        where = f"{place.name} {with_unit(number_text(first_value(limit.at)), place.unit)}"
         values = [f"{name} {_quantity_text(value)}" for name, value in limit.values.items()]
         reason = f", where {limit.reason}" if limit.reason else ""
         yield Paragraph(f"A dead point of the driver is at {where}{reason}{': ' + listed(values) if values else ''}.")
@@ -169,7 +170,7 @@ def _features(one: OutputFigures, path: PathFeatures, unit: str) -> Iterator[str
         (name, a), b = next(iter(stretch.begin.items())), next(iter(stretch.end.values()))
         turned = one.motion.drives[name].is_angle
         begin, end = (number_text(float(np.rad2deg(v)) if turned else v) for v in (a, b))
-        far = f"{number_text(stretch.length)}{unit}, {name} {begin} to {end}"
+        far = f"{number_text(stretch.length)}{unit}, {name} {begin} to {with_unit(end, DEGREES if turned else '')}"
         yield f"{kind} within {stretch.deviation:.2g} over {far}"
     yield from (counted(len(what), name) for what, name in
                 ((path.cusps, "cusp"), (path.double_points, "double point")) if what)  # fmt: skip
@@ -285,7 +286,7 @@ def display_unit(one: Quantity) -> str:
 
 
 def _quantity_text(one: Quantity) -> str:
-    return f"{number_text(display_value(one))} {display_unit(one)}".rstrip()
+    return with_unit(number_text(display_value(one)), display_unit(one))
 
 
 def _span_text(begin: Quantity, end: Quantity) -> str:

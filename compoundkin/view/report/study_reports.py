@@ -13,7 +13,7 @@ from compoundkin.analysis.common_pose import scale_of_units
 from compoundkin.analysis.comparison import ROUNDING, MechanismComparison
 from compoundkin.base.arrays import Number, degrees
 from compoundkin.kinematics.quantities import ASSEMBLED, Quantity
-from compoundkin.model.attributes import DEGREES, GREATEST, LEAST, PARTS, RADIANS
+from compoundkin.model.attributes import DEGREES, GREATEST, LEAST, PARTS, RADIANS, with_unit
 from compoundkin.model.geometry import FRAME
 from compoundkin.studies.optimisation.optimum import LocalMinimum, Optimum
 from compoundkin.studies.study_program import CIRCUIT, ORDER_DEFECT, REASON, ROW, StudyColumn
@@ -241,7 +241,7 @@ def _contribution_blocks(found: ToleranceAnalysis, chosen: Sequence[OutputTolera
     for one in chosen:
         pose = worst_pose(one)
         column, places = Sample(found.motion).places
-        where = "" if pose is None else f" at {column.name} {number_text(float(places[pose]))} {column.unit}".rstrip()
+        where = "" if pose is None else f" at {column.name} {with_unit(number_text(float(places[pose])), column.unit)}"
         yield Paragraph(f"To {one.name}{where}, with the share of each in the variance:")
         source, low, high, unit, worst, deviation, share = found.table(one.name).shown.columns
         rows: list[tuple[Cell, ...]] = []
@@ -417,7 +417,7 @@ def _comparison_verdict(found: MechanismComparison) -> str:
         return found.verdict
     angles = found.structures[0].driven_angles
     values = (
-        f"{k} {number_text(float(degrees(v)))} deg" if angles[k] else f"{k} {number_text(v)}"
+        f"{k} {with_unit(number_text(float(degrees(v))), DEGREES)}" if angles[k] else f"{k} {number_text(v)}"
         for k, v in largest.drives.items()
     )
     return f"{found.verdict} with {listed(values)}, {brief(largest.distance / found.size)} of the size"

@@ -12,6 +12,7 @@ from rich.padding import Padding
 from rich.table import Table as Grid
 from rich.text import Text
 
+from compoundkin.model.attributes import plain_unit
 from compoundkin.view.report.report_data import (
     Alert,
     Column,
@@ -158,4 +159,4 @@ def _heading(column: Column) -> str:
     name = column.name
     if column.is_number:
         name = name.replace(".", "\n").replace("_", "\n").replace(" ", "\n")
-    return f"{name}\n[{column.unit}]" if column.unit else name
+    return f"{name}\n[{plain_unit(column.unit)}]" if column.unit else name

@@ -21,7 +21,7 @@ from compoundkin.base.errors import InvalidInput, NotAssembled, UnassembledPoses
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.gaps import Gap, gaps
 from compoundkin.kinematics.quantities import Quantity, quantity
-from compoundkin.model.attributes import HIGHEST_ORDER, RATES, TIME, motion_figure
+from compoundkin.model.attributes import HIGHEST_ORDER, RATES, TIME, motion_figure, with_unit
 from compoundkin.model.elements import Expectation
 from compoundkin.structure import Structure
 from compoundkin.view.report.pose_sample import Sample
@@ -136,9 +136,9 @@ def _time_interval_text(begin: float, end: float, gap: Gap) -> str:
 
 
 def _end_values(driver: Quantity, gap: Gap) -> tuple[float, float, str]:
-    """Return the driver's values at the ends of a gap, and their unit with a blank before it."""
+    """Return the driver's values at the ends of a gap, and their unit as it follows a number."""
     begin, end = (degrees(v[driver.name]) if driver.is_angle else v[driver.name] for v in (gap.begin, gap.end))
-    return begin, end, f" {driver.unit}" if driver.unit != "length" else ""
+    return begin, end, with_unit("", driver.unit) if driver.unit != "length" else ""
 
 
 def _values_text(driver: Quantity, gap: Gap) -> str:

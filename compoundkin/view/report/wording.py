@@ -11,7 +11,7 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.kinematics.quantities import Quantity, quantity
-from compoundkin.model.attributes import SUPERSCRIPTS, with_superscripts
+from compoundkin.model.attributes import SUPERSCRIPTS, plain_unit, typeset_unit, with_unit
 from compoundkin.view.report.report_data import Cell, Column
 
 if TYPE_CHECKING:
@@ -23,6 +23,8 @@ LARGEST, SMALLEST = 1e7, 1e-3
 MISSING = "-"
 # Powers of seconds, and numbers that are multiplied; names may have anything else.
 _TYPESET = re.compile(r"(?<=/s)\^[23]\b|(?<=\d) \* (?=\d)")
+# The heads of columns that have a unit in each row.
+UNIT_HEADS = ("unit", "speed in")
 _KINDS = ("free", "singular", "binary", "ternary", "quaternary", "quinary", "senary")
 
 
@@ -43,7 +45,7 @@ def title_with_unit(column: Column) -> str:
     >>> title_with_unit(Column("speed", "mm/s^2"))
     'speed [mm/s²]'
     """
-    return f"{column.name} [{with_superscripts(column.unit)}]" if column.unit else column.name
+    return f"{column.name} [{typeset_unit(column.unit)}]" if column.unit else column.name
 
 
 def number_text(value: float) -> str:
@@ -77,7 +79,7 @@ def _cell_text(column: Column, cell: Cell, write: Callable[[float], str], betwee
     if isinstance(cell, bool):
         return "pass" if cell else "FAIL"
     if isinstance(cell, str):
-        return cell
+        return plain_unit(cell) if column.name in UNIT_HEADS else cell
     if isinstance(cell, tuple):
         return between.join(_finite_text(column, value, write) for value in cell)
     return MISSING if cell is None else _finite_text(column, cell, write)
@@ -207,4 +209,4 @@ def _objective_unit(found: Optimum) -> str:
 def objective_text(found: Optimum, value: float) -> str:
     """Write an objective with its unit."""
     shown = objective_quantity(found, value)
-    return f"{number_text(float(shown.values))} {shown.unit}".rstrip()
+    return with_unit(number_text(float(shown.values)), shown.unit)

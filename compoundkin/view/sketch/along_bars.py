@@ -170,7 +170,7 @@ def _notes(
         yield "pale: from the least to the greatest of all poses"
         for one in shown:
             end = max(one.bar.extremes(what, options.design), key=lambda found: abs(found.value))
-            where = pose_text(one.bar.motion, options.design, end.pose).replace(" deg", "°")
+            where = pose_text(one.bar.motion, options.design, end.pose)
             yield f"{one.name} {force_text(end.value).replace('-', '−')} at {where}"
     if not forces.inertia:
         yield "statics"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
-from compoundkin.model.attributes import ACCELERATION, PER_SECOND, VELOCITY, with_superscripts
+from compoundkin.model.attributes import ACCELERATION, PER_SECOND, VELOCITY, typeset_unit
 from compoundkin.model.geometry import FRAME
 from compoundkin.view.sketch.labels import label_around, names_at_places, placed, text_half
 from compoundkin.view.sketch.painter import link_corners
@@ -21,7 +21,7 @@ from compoundkin.view.sketch.sketch_style import LETTER, LINE, STUD, style_of
 
 # The kinds of vectors: their derivative, and what they are per.
 KINDS_OF_VECTOR: Mapping[str, tuple[int, str]] = {
-    word: (order, with_superscripts(PER_SECOND[order])) for order, word in ((1, VELOCITY), (2, ACCELERATION))
+    word: (order, typeset_unit(PER_SECOND[order])) for order, word in ((1, VELOCITY), (2, ACCELERATION))
 }
 # The longest vector is at most this part of the picture's diagonal.
 LONGEST = 0.2

@@ -79,12 +79,12 @@ def test_what_only_its_closure_says_is_written_as_a_function(oldham: Any) -> Non
     keys = [unknown.key for unknown in equations.unknowns]
     if "x(tray/frame)" in keys:
         assert text(own) == "F1[tray/frame](tray, x(tray/frame), y(tray/frame)) = 0"
-        assert text(loop).endswith("- y(tray/frame) e^(i (90 deg)) - x(tray/frame) = 0")
+        assert text(loop).endswith("- y(tray/frame) e^(i (90°)) - x(tray/frame) = 0")
         said = [block.text for block in equations_section(equations).blocks if isinstance(block, Paragraph)]
         assert IMPLICIT_FUNCTIONS.format(pairs="tray/frame") in said
     else:
         assert keys[-2:] == ["s(tray/frame (x))", "s(tray/frame (y))"]
-        assert text(own) == "tray - 11.4592 deg = 0"
+        assert text(own) == "tray - 11.4592° = 0"
 
 
 def test_rates_of_an_oldham_pair_follow_from_its_closure(oldham: Any) -> None:

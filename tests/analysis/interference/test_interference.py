@@ -256,7 +256,7 @@ def test_reports_and_checks_say_it(tmp_path: Path) -> None:
     stopped = BARE.replace(ck.outline("crank", 2), ck.outline("frame", at=(0, 8), radius=1, layer=[0, 1]))
     found = ck.interference(ck.solve(stopped))
     assert repr(found) == "Interference('Crank' at 73 poses: 1 pair of links touch)"
-    assert "crank and frame on layer 0 touch from crank 75.5224878 deg to 104.477512 deg" in found._repr_html_()
+    assert "crank and frame on layer 0 touch from crank 75.5224878° to 104.477512°" in found._repr_html_()
     text = ck.report(stopped).text().replace("\n", " ")
     assert "1 pair of links touch" in text
     free = stopped.replace(ck.outline("frame", at=(0, 8), radius=1, layer=2))

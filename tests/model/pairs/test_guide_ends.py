@@ -105,7 +105,7 @@ def test_a_configuration_beyond_an_end_is_none() -> None:
 def test_the_report_names_the_end() -> None:
     motion = ck.solve(geneva(), {"crank": ck.deg(np.arange(0, 361, 5))})
     text = " ".join(ck.report(motion).text().split())
-    assert "Between crank 45 and 315 deg, A at 170.711 is beyond the end of slot, E at 70.7107." in text
+    assert "Between crank 45 and 315°, A at 170.711 is beyond the end of slot, E at 70.7107." in text
 
 
 # --- slides ----------------------------------------------------------------------------------------------

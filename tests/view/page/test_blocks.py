@@ -18,7 +18,7 @@ from click.testing import CliRunner
 import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.files import load
-from compoundkin.model.attributes import with_superscripts
+from compoundkin.model.attributes import typeset_unit
 from compoundkin.view.page.html_document import ASSETS, asset
 from compoundkin.view.page.html_tables import names_of
 from compoundkin.view.page.report_page import Page
@@ -149,7 +149,7 @@ def _holds(table: TableBlock, rows: list[list[str]], whole: bool) -> None:
             assert {_number(text) for text in wanted} <= {_number(text) for text in shown}
         else:
             # the page raises the powers of units, and has the sign of degrees
-            signed = ["°" if text == "deg" else with_superscripts(text) for text in wanted]
+            signed = ["°" if text == "deg" else typeset_unit(text) for text in wanted]
             assert shown == [" ".join(text.split()) for text in signed]
 
 

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.view.sketch.force_arrows import drawn_moment_courses
+from compoundkin.view.sketch.kinematic_sketch import moving_sketch
 from tests.view.loaded import six_bar_forces
 
 from .conftest import PHONE
@@ -16,6 +18,7 @@ from .conftest import PHONE
 pytestmark = pytest.mark.full
 
 PLAYER = "compoundkin.players[0]"
+FORCES = f"{PLAYER}.overlays.forces"
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +33,7 @@ def test_arrows_follow_the_slider(loaded_page: Path, opened: Any) -> None:
     view.check('[data-show="forces"]')
     for k in (0, 40):
         view.value(f"k => {PLAYER}.show(k)", k)
-        found = view.value(f"""() => {PLAYER}.forces.map((one) => [one.told, ...{PLAYER}.overlays.acts(one),
+        found = view.value(f"""() => {FORCES}.forces.map((one) => [one.told, ...{FORCES}.acts(one),
             ...one.force.map((c) => c[{PLAYER}.pose])])""")  # fmt: skip
         told = {name: (complex(x, y), complex(fx, fy)) for name, x, y, fx, fy in found}
         place, force = told["pair A on rocker by plate"]
@@ -41,6 +44,28 @@ def test_arrows_follow_the_slider(loaded_page: Path, opened: Any) -> None:
     assert view.value("() => document.querySelectorAll('svg .forces > *').length") == 0
     assert view.complaints == []
     assert len(view.requests) == 1
+
+
+def test_arrows_and_arcs_have_names(loaded_page: Path, opened: Any) -> None:
+    view, forces = opened(loaded_page), six_bar_forces()
+    view.check('[data-show="forces"]')
+    texts = view.value(
+        "() => [...document.querySelectorAll('svg .forces text:not(.ck-halo)')].map((t) => t.textContent)"
+    )
+    pose = view.value(f"() => {PLAYER}.pose")
+    for course in drawn_moment_courses(forces, moving_sketch(forces.motion).scene, 0):
+        assert (course.shown.turning in texts) == (abs(course.moment[pose]) >= 0.01 * np.max(np.abs(course.moment)))
+    assert [text for text in texts if text.startswith("F")]
+    turned = view.value(f"() => {FORCES}.moments.map((one) => [one.told, [...one.moment]])")
+    driven = next(np.array(values) for told, values in turned if told.startswith("driver"))
+    assert np.allclose(driven, forces.drives["crank"].effort, rtol=0, atol=1e-6 * np.max(np.abs(driven)))
+    # an arc turns as its moment does: counterclockwise is the sense of a positive angle
+    heads = view.value(f"""() => {FORCES}.moments.filter((one) => {FORCES}.turns(one)).map(
+        (one) => Math.sign(one.moment[{PLAYER}.pose]))""")  # fmt: skip
+    sweeps = view.value("""() => [...document.querySelectorAll('svg .forces path[fill=none]')].map((p) =>
+        Number(p.getAttribute('d').split('A')[1].split(' ')[4]))""")  # fmt: skip
+    assert [-1 if sweep else 1 for sweep in sweeps] == heads
+    assert view.complaints == []
 
 
 def test_the_section_is_accessible_and_fits(loaded_page: Path, opened: Any) -> None:

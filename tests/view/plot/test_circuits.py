@@ -195,9 +195,9 @@ def test_many_circuits_are_grey_but_for_the_own() -> None:
 
 def test_without_a_quantity_it_is_what_the_mechanism_states_or_what_tells_branches_apart() -> None:
     stated = plot.circuits(load("crank-rocker"))
-    assert [axes.get_ylabel() for axes in stated.figure.axes] == ["rocker.angle [deg]", "coupler.angle [deg]"]
+    assert [axes.get_ylabel() for axes in stated.figure.axes] == ["rocker.angle [°]", "coupler.angle [°]"]
     plain = four_bar(4.0, 5.0, 3.0, 7.0, "crank")
-    assert [axes.get_ylabel() for axes in plot.circuits(plain).figure.axes] == ["rocker.angle [deg]"]
+    assert [axes.get_ylabel() for axes in plot.circuits(plain).figure.axes] == ["rocker.angle [°]"]
 
 
 def test_one_driver_of_several_moves_and_the_title_tells_where_the_others_stand() -> None:
@@ -296,7 +296,7 @@ def test_poles_are_gaps_in_polar_plots_and_along_the_axis_too() -> None:
     motion = catalog.motion("crank-rocker")
     polar = ck.plots.polar(motion, "rocker.advantage").figure.axes[0]
     assert np.isnan(polar.lines[0].get_ydata()).sum() == 2
-    assert polar.get_xlabel() == "rocker.advantage over crank [deg]"
+    assert polar.get_xlabel() == "rocker.advantage over crank [°]"
     across = ck.plot(motion, "rocker.transmission_angle", against="rocker.advantage").figure.axes[0]
     assert np.isnan(across.lines[0].get_xdata()).sum() == 2
 

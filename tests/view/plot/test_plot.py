@@ -95,9 +95,9 @@ def test_the_lines_are_the_motions_arrays(six_bar: ck.results.Motion) -> None:
 def test_units_and_names_are_on_the_axes(six_bar: ck.results.Motion) -> None:
     axes = ck.plot(six_bar, "bar.angle", "bar.angular_acceleration", "G.acceleration", "slot.rate").figure.axes
     labels = [one.get_ylabel().replace("\n", " ") for one in axes]
-    wanted = ["bar.angle [deg]", "bar.angular_acceleration [rad/s²]", "G.acceleration [mm/s²]", "slot.rate [mm/s]"]
+    wanted = ["bar.angle [°]", "bar.angular_acceleration [rad/s²]", "G.acceleration [mm/s²]", "slot.rate [mm/s]"]
     assert labels == wanted
-    assert [one.get_xlabel() for one in axes] == ["", "", "", "crank [deg]"]
+    assert [one.get_xlabel() for one in axes] == ["", "", "", "crank [°]"]
 
 
 def test_against_a_quantity(six_bar: ck.results.Motion) -> None:
@@ -105,7 +105,7 @@ def test_against_a_quantity(six_bar: ck.results.Motion) -> None:
     ((x, y),) = curves(axes).values()
     np.testing.assert_allclose(at_poses(x, 73), np.rad2deg(six_bar.links["bar"].angle), rtol=1e-12)
     np.testing.assert_array_equal(at_poses(y, 73), six_bar.points["G"].velocity.real)
-    assert axes.get_xlabel() == "bar.angle [deg]"
+    assert axes.get_xlabel() == "bar.angle [°]"
 
 
 def test_a_motion_in_time_is_drawn_over_time_unless_told() -> None:
@@ -125,7 +125,7 @@ def test_a_motion_in_time_is_drawn_over_time_unless_told() -> None:
 def test_quantities_of_one_unit_share_a_panel(six_bar: ck.results.Motion) -> None:
     names = ("bar.angle", "G.speed", "plate.angle")
     first, second = ck.plot(six_bar, *names, stacked=False).figure.axes
-    assert (first.get_ylabel(), second.get_ylabel()) == ("[deg]", "G.speed [mm/s]")
+    assert (first.get_ylabel(), second.get_ylabel()) == ("[°]", "G.speed [mm/s]")
     assert list(curves(first)) == ["bar.angle", "plate.angle"]
 
 
@@ -145,7 +145,7 @@ def test_designs_are_a_family_of_curves(sweep: ck.results.Motion) -> None:
 def test_several_motions_share_panels(six_bar: ck.results.Motion, rocker: ck.results.Motion) -> None:
     other = solved("crank-rocker")
     (axes,) = ck.plot([other, rocker], "rocker.angular_velocity").figure.axes
-    assert axes.get_xlabel() == "crank, driver [deg]"
+    assert axes.get_xlabel() == "crank, driver [°]"
     for line, motion in zip(curves(axes).values(), (other, rocker), strict=True):
         assert np.nanmax(line[1]) >= np.nanmax(motion.links["rocker"].angular_velocity) - 1e-12
     named = [text.get_text() for text in axes.figure.legends[0].get_texts()]

@@ -76,7 +76,7 @@ def test_a_scatter_matrix_shows_the_rows_and_which_are_not_assembled(result: ck.
     x, y = (np.argsort(np.argsort(result[name][result.assembled])) for name in (CRANK, STROKE))
     assert float(texts(grid[0, 2])[0]) == round(np.corrcoef(x, y)[0, 1], 2)
     coloured = result.plot(CRANK, STROKE, colour=TRANSMISSION).figure.axes
-    assert coloured[-1].get_ylabel() == f"{TRANSMISSION} [deg]"
+    assert coloured[-1].get_ylabel() == f"{TRANSMISSION} [°]"
 
 
 def test_a_pareto_plot_has_the_front_of_all_rows(result: ck.results.StudyResult) -> None:
@@ -87,7 +87,7 @@ def test_a_pareto_plot_has_the_front_of_all_rows(result: ck.results.StudyResult)
     expected = np.rad2deg(np.column_stack([result[STROKE], result[TRANSMISSION]]))
     np.testing.assert_allclose(drawn["front"], expected[front])
     assert len(drawn["front"]) + len(drawn["other designs"]) == result.assembled.sum()
-    assert (axes.get_xlabel(), axes.get_ylabel()) == (f"{STROKE} [deg], greatest", f"{TRANSMISSION} [deg], least")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == (f"{STROKE} [°], greatest", f"{TRANSMISSION} [°], least")
     assert len(front) > 12 or set(texts(axes)) <= set(map(str, front))
 
 
@@ -102,7 +102,7 @@ def test_bands_are_the_percentiles_of_assembled_designs(result: ck.results.Study
     own = np.percentile(result["C.position"][result.assembled].real, [5, 95], axis=0)
     assert set(np.round(own.ravel(), 9)) <= set(np.round(edges, 9))
     assert [one.get_ylabel() for one in (angle, x)] == [
-        "rocker.angle [deg]",
+        "rocker.angle [°]",
         "C.position.x",
     ] or "length" in x.get_ylabel()
 
@@ -142,7 +142,7 @@ def test_contributions_are_shares_and_parts_the_greatest_first(tolerances: ck.re
     )
     assert sum(bar.get_width() for bar in shares.patches) == pytest.approx(100.0)
     at = ck.plots.contributions(tolerances, ANGLE, pose=3)
-    assert heading(at).replace("\n", " ").startswith("Crank-rocker: rocker.angle at crank 90 deg, worst case ±")
+    assert heading(at).replace("\n", " ").startswith("Crank-rocker: rocker.angle at crank 90°, worst case ±")
 
 
 def test_a_histogram_of_tolerances_has_the_normal_distribution_beside_it(
@@ -248,7 +248,7 @@ def test_courses_are_before_and_after() -> None:
     np.testing.assert_allclose(after.get_ydata(), np.rad2deg(found.motion.links["rocker"].angle))
     both = ck.plots.improvement(found, "C", "rocker.angular_velocity").figure
     assert [one.get_ylabel() for one in both.axes] == ["y [length]", "rocker.angular_velocity\n[rad/s]"]
-    assert both.get_suptitle().startswith("Crank-rocker: objective 61.4261 deg → ")
+    assert both.get_suptitle().startswith("Crank-rocker: objective 61.4261° → ")
     with pytest.raises(ck.errors.UnknownName):
         ck.plots.improvement(found, "rocker.angel")
 
@@ -281,7 +281,7 @@ def test_the_report_tells_what_changed_and_how_sure_it_is() -> None:
     assert report.outcome.verified is True
     assert report.outcome.checks == len(found.check.findings) == len(tables(report, "checks")[0])
     text = report.text()
-    assert "The objective came from 61.4261 deg to " in text
+    assert "The objective came from 61.4261° to " in text
     assert f"{found.agreed} ended at an objective as good as the best." in " ".join(text.split())
 
 

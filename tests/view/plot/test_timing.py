@@ -74,7 +74,7 @@ def test_the_chart_of_a_mechanism_has_its_units_title_and_times(tmp_path: Path) 
     law = program(rise(ck.deg(90), 1), dwell(1))
     picture = ck.plots.timing_chart(arm(law, time=np.linspace(0, 4, 9)))
     (axes,) = picture.figure.axes
-    assert axes.get_ylabel() == "arm\n[deg]"
+    assert axes.get_ylabel() == "arm\n[°]"
     assert axes.get_xlim() == (0.0, 4.0)
     assert [text.get_text() for text in axes.texts[:2]] == ["rise 1 s", "dwell 3 s"]
     np.testing.assert_allclose(axes.get_yticks(), [0.0, 90.0])
@@ -84,7 +84,7 @@ def test_the_chart_of_a_mechanism_has_its_units_title_and_times(tmp_path: Path) 
     np.testing.assert_allclose(axes.get_yticks(), [0.0, 2.0, 3.0])
     picture.save(tmp_path / "chart.pdf")
     turned = ck.plots.timing_chart({"lift": program(rise(20, np.pi), fall(20, np.pi))}, over="rotation", title="Lift")
-    assert turned.figure.axes[0].get_xlabel() == "rotation of the cam [deg]"
+    assert turned.figure.axes[0].get_xlabel() == "rotation of the cam [°]"
 
 
 @pytest.mark.parametrize(

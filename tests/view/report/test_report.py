@@ -211,7 +211,7 @@ def test_what_cannot_be_assembled_is_explained(broken: ck.results.Motion) -> Non
     assert made.outcome.passed
     told = texts(made, "gaps")
     assert "49 of 73 poses cannot be assembled." in told
-    assert "Between crank 56.1036448 and 303.896355 deg, the RRR group of coupler and rocker does not close" in told
+    assert "Between crank 56.1036448 and 303.896355°, the RRR group of coupler and rocker does not close" in told
     assert "> |BC| + |CD| = 3 + 3" in told
     # law of cosines: |BD| = 6 at the interval's ends
     assert np.rad2deg(np.arccos((1 + 6.5**2 - 36) / (2 * 6.5))) == pytest.approx(56.1036448, abs=1e-7)
@@ -225,14 +225,14 @@ def test_a_motion_with_no_assembled_pose_fails_no_check_but_has_none(broken: ck.
     assert (made.outcome.assembled, made.outcome.passed) == (0, False)
     assert "0 of 2 poses assembled; nothing could be checked." in texts(made, "about")
     assert "nothing to check" in texts(made, "checks")
-    assert "In the whole motion, crank 170 to 180 deg" in texts(made, "gaps")
+    assert "In the whole motion, crank 170 to 180°" in texts(made, "gaps")
 
 
 @pytest.mark.parametrize(
     ("degrees", "told"),
     [
-        ([0, 30, 60, 90], "From crank 56.1036448 deg to the end, 90 deg"),
-        ([90, 60, 30, 0], "From the start, crank 90 deg, to 56.1036448 deg"),
+        ([0, 30, 60, 90], "From crank 56.1036448° to the end, 90°"),
+        ([90, 60, 30, 0], "From the start, crank 90°, to 56.1036448°"),
     ],
 )
 def test_a_gap_that_reaches_an_end_of_the_motion(broken: ck.results.Motion, degrees: list[float], told: str) -> None:

@@ -6,6 +6,21 @@
   const DOT = 3.2;
   const TOGETHER = 3; // centres nearer to each other are named together
   const HALF_LETTER = 3.4; // of a name, along it
+  const ROUNDING = 1e-9; // parts of the rates below which a difference is rounding
+
+  // the pole of two links of a changed mechanism, from their velocities:
+  // (x, y, w) of the pole of links i and j at pose k; w is zero at infinity, all are NaN where neither moves against the other
+  const pole = (links, i, j, k, size) => {
+    // the velocity of what is at the origin, and the rate of turning
+    const rate = ({ x, y, v }) => (v ? [v[0][k] + v[2][k] * y[k], v[1][k] - v[2][k] * x[k], v[2][k]] : [NaN, NaN, NaN]);
+    const one = rate(links[i]), other = rate(links[j]);
+    const [ax, ay, w] = one.map((value, part) => other[part] - value);
+    const fastest = (part) => Math.max(...[one, other].map((it) => Math.abs(it[part])));
+    const still = ROUNDING * Math.max(size * fastest(2), fastest(0), fastest(1));
+    const turns = Math.abs(w) * size > still;
+    if (!turns && Math.hypot(ax, ay) <= still) return [NaN, NaN, NaN];
+    return [-ay, ax, turns ? w : 0];
+  };
 
   class CentreOverlay {
     constructor(overlays) {
@@ -43,7 +58,7 @@
       if (at && !at.some((values) => values.some(Number.isFinite))) return [NaN, NaN, NaN];
       const { player } = this, { width, scale } = player.data.window;
       const [i, j] = links.map((name) => player.data.links.findIndex((link) => link.name === name));
-      return page.pole(player.links, i, j, player.pose, width / scale);
+      return pole(player.links, i, j, player.pose, width / scale);
     }
 
     // --- names ------------------------------------------------------------------------------------------------------------

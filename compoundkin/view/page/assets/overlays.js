@@ -3,7 +3,6 @@
   "use strict";
   const page = window.compoundkin;
   const SCALE = 18; // the height of the line that tells a scale of vectors
-  const KEY = 22; // the length of an arrow that tells a colour
   const VECTORS = [["velocity", 1, "velocities"], ["acceleration", 2, "accelerations"]];
   const LAYERS = ["traces", "rays", "velocities", "accelerations", "forces", "dots"];
   const HEAD = 10, HALF = 3.6; // an arrow's head, as in every other picture
@@ -14,13 +13,10 @@
       Object.assign(this, { player, data, shown: new Set(["names"]) });
       this.layers = Object.fromEntries(LAYERS.map((name) => [name, svg.querySelector(`.${name}`)]));
       this.centres = new page.CentreOverlay(this);
+      this.forces = new page.ForceOverlay(this);
     }
     get isChanged() {
       return Boolean(this.player.design?.isChanged);
-    }
-    // forces are those of the dimensions that the page came with
-    get forces() {
-      return this.shown.has("forces") && !this.isChanged ? this.player.forces : [];
     }
     get vectors() {
       return VECTORS.filter(([kind]) => this.shown.has(kind) && this.data.vectors[kind]);
@@ -41,16 +37,15 @@
     }
     // where each arrow begins and which way it goes, on the picture
     *arrows() {
-      const { player, data } = this;
+      const { player } = this;
       for (const [kind, order] of this.vectors) {
         for (const letter in player.points) for (let k = 0; k < player.poses; k++) yield this.vector(letter, kind, order, k);
       }
-      for (const one of this.forces) for (let k = 0; k < player.poses; k++) yield this.force(one, data.forces.scale, k);
+      if (this.forces.isShown) yield* this.forces.arrows();
     }
     // so high are the scales below the picture
     get below() {
-      const colours = this.forces.length ? 1 + Object.keys(this.data.forces.kinds).length : 0;
-      return (this.vectors.length + colours) * SCALE;
+      return (this.vectors.length + (this.forces.isShown ? this.forces.keys.length : 0)) * SCALE;
     }
 
     // --- drawn at the pose that is shown ----------------------------------------------------------------------------------
@@ -59,7 +54,7 @@
       for (const name of LAYERS) if (name !== "traces") layers[name].replaceChildren();
       if (!isKnown) return;
       for (const [kind, order, layer] of this.vectors) this.drawVectors(kind, order, layers[layer]);
-      if (this.forces.length) this.drawForces(layers.forces);
+      if (this.forces.isShown) this.forces.draw();
       if (shown.has("centres")) this.centres.draw();
     }
     vector(letter, kind, order, k = this.player.pose) {
@@ -75,32 +70,11 @@
       const isAbove = kind === "acceleration" && this.shown.has("velocity");
       this.key(kind, `${kind}, ${scale.text}`, scale.length, isAbove ? 1.5 : 0.5, layer);
     }
-    // where a force acts: at a point of its link, or where it was told for every pose
-    acts({ at, link, x, y }, k = this.player.pose) {
-      return at ? at.map((values) => values[k]) : this.player.at(link, x, y, k);
-    }
-    force(one, scale, k = this.player.pose) {
-      return [this.player.paper(this.acts(one, k)), [one.force[0][k] * scale, -one.force[1][k] * scale]];
-    }
-    drawForces(layer) {
-      const { scale, shortest, length, text, kinds, unit } = this.data.forces;
-      for (const one of this.forces) {
-        const [at, way] = this.force(one, scale), long = Math.hypot(...way);
-        if (!(long >= shortest)) continue;
-        const group = page.drawn("g", {}, layer);
-        page.drawn("title", {}, group).textContent = `${one.told}: ${page.withUnit(long / scale, unit)}`;
-        this.arrow(at, way, one.kind, group);
-      }
-      const before = this.vectors.length, rows = [["drive", text], ...Object.entries(kinds)];
-      rows.forEach(([kind, words], row) => {
-        this.key(kind, words, kind === "drive" ? length : KEY, before + rows.length - row - 0.5, layer);
-      });
-    }
-    // an arrow with what it says, so many rows above the lower edge
+    // an arrow with what it says, so many rows above the lower edge; words alone where it has no length
     key(kind, words, long, rows, layer) {
       const { left, top, height } = this.player.room, x = left + 12, y = top + height - rows * SCALE * this.player.letters.size;
-      this.arrow([x, y], [long, 0], kind, layer);
-      this.text(words, x + 8 + long, y, "ck-note", "start", layer);
+      if (long) this.arrow([x, y], [long, 0], kind, layer);
+      this.text(words, long ? x + 8 + long : x, y, "ck-note", "start", layer);
     }
     text(words, x, y, style, anchor, layer) {
       const { size } = this.player.letters, grown = size !== 1 ? ` scale(${size})` : "";

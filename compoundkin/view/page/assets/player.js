@@ -59,7 +59,6 @@
         }
       }
       this.centres = data.centres.map((centre) => ({ ...centre, at: centre.at && centre.at.map(open) }));
-      this.forces = (data.forces?.arrows ?? []).map((one) => ({ ...one, force: one.force.map(open), at: one.at && one.at.map(open) }));
       this.points = Object.fromEntries(data.points.map((point) => [point.name, point]));
       this.room = this.base = { left: 0, top: 0, width: data.window.width, height: data.window.height };
       this.find();

@@ -10,6 +10,7 @@ FIRST_SCRIPTS = ("numbers.js", "elements.js")
 PLAYER_SCRIPTS = (
     "letters.js",
     "centre_overlay.js",
+    "force_overlay.js",
     "overlays.js",
     "reading.js",
     "transport.js",
@@ -24,7 +25,6 @@ SCRIPTS = (
     "live/design.js",
     "live/redraw.js",
     "live/vector_scales.js",
-    "live/poles.js",
     "live/snapping.js",
     "live/handles.js",
     "live/readout.js",
