@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from html import escape
+from html import escape, unescape
 from math import tau
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ from compoundkin.model.pairs.symbols import Outline, Strap, Track, Wheel
 from compoundkin.structure import roman
 from compoundkin.synthesis.chains import structure_name
 from compoundkin.view.animation import animate
+from compoundkin.view.page.mathml import with_formulas
 from compoundkin.view.sketch.picture_options import scene_in, solved_over
 
 FOLDER = "gallery"
@@ -166,6 +167,12 @@ def parts_of(parts: Mapping[str, Iterable[str]]) -> Iterator[str]:
             yield PART.format(title=title, cells="\n".join(cells))
 
 
+def described(mechanism: ck.Mechanism) -> str:
+    """The description of a mechanism, its formulas as mathematics."""
+    parts = re.split(r"(<math>.*?</math>)", with_formulas(mechanism.description, mechanism.links))
+    return "".join(one if one.startswith("<math>") else plain(unescape(one)) for one in parts)
+
+
 def files_of(name: str, mechanism: ck.Mechanism, structure: ck.results.Structure) -> dict[str, str]:
     """A mechanism's page and its pictures; one that cannot be solved is shown as drawn."""
     shown = whole_motion(mechanism) or mechanism
@@ -174,7 +181,7 @@ def files_of(name: str, mechanism: ck.Mechanism, structure: ck.results.Structure
         name=name,
         title=plain(mechanism.title),
         alt=plain(picture.description),
-        description=plain(mechanism.description),
+        description=described(mechanism),
         structure=plain(structure_of(structure)),
         source=plain(mechanism.source),
         live=LIVE.format(name=name) if isinstance(shown, ck.results.Motion) else "",

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from compoundkin.view.page.html_tables import HtmlTable, Names, table_html
 from compoundkin.view.page.markup import element, lines, safe, screen_reader_text
-from compoundkin.view.page.mathml import UnknownLatex, mathml
+from compoundkin.view.page.mathml import UnknownLatex, mathml, with_formulas
 from compoundkin.view.report.report_data import (
     Alert,
     FormulaBlock,
@@ -143,7 +143,9 @@ class Blocks:
                     yield _formula(block)
                 case Paragraph():
                     # badges at the head of the page repeat the rest
-                    yield element("p", safe(typeset(block.text.removesuffix(block.badged).rstrip())))
+                    text = typeset(block.text.removesuffix(block.badged).rstrip())
+                    inside = with_formulas(text, self.names.groups) if section.key == ABOUT else safe(text)
+                    yield element("p", inside)
                 case Alert():
                     remedy = f"\n<p><b>Remedy:</b> {safe(block.remedy)}.</p>" if block.remedy else ""
                     text = f"<strong>{screen_reader_text('Warning:')} {safe(typeset(block.text))}</strong>"

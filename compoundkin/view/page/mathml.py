@@ -1,23 +1,23 @@
-r"""Formulas as MathML, from the LaTeX that reports write them in: a small part of it, and nothing of it unread.
+r"""Formulas as MathML: those in sentences, and those of reports, which write them in a small part of LaTeX.
 
 The part is letters, numbers, brackets, commas, `_`, `^`, `\theta`, `\varphi`, `\circ`, `\text{...}`, `\overline{...}`,
-`\operatorname{...}`, `\left` and `\right`, `\sin` and `\cos`, `\dot` and `\ddot`, `\prime`, `\partial`, "/", and
-matrices in brackets (`bmatrix`).
+`\operatorname{...}`, `\left` and `\right`, `\sin` and `\cos`, `\sqrt{...}`, `\dot` and `\ddot`, `\prime`,
+`\partial`, "/", `\:`, and matrices in brackets (`bmatrix`).
 Source: W3C, MathML Core.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 
 from compoundkin.view.page.markup import safe
 
 LETTERS = {r"\theta": "θ", r"\varphi": "φ", r"\partial": "∂"}
 SIGNS = {"-": "−", "+": "+", "=": "=", ",": ","}
-OTHER_SIGNS = {"/": "/", r"\prime": "′"}
+OTHER_SIGNS = {"/": "/", "·": "·", r"\prime": "′"}
 # Functions, whose names stand upright; dots over a letter.
-FUNCTIONS = {r"\sin": "sin", r"\cos": "cos"}
+FUNCTIONS = {r"\sin": "sin", r"\cos": "cos", r"\tan": "tan", r"\cot": "cot"}
 DOTS = {r"\dot": "˙", r"\ddot": "¨"}
 # What ends an entry and a row of a matrix.
 NEXT, ROW = "&", r"\\"
@@ -29,10 +29,10 @@ class UnknownLatex(ValueError):
     """LaTeX that is not of the small part."""
 
 
-def mathml(latex: str) -> str:
-    r"""Return a formula as MathML, its terms one after the other. So lines may be broken between them.
+def mathml(latex: str, breaks: bool = True) -> str:
+    r"""Return a formula as MathML, its terms one after the other. So lines may be broken between them, if it `breaks`.
 
-    Raises Unread for LaTeX that it does not know.
+    Raises UnknownLatex for LaTeX that it does not know.
 
     >>> mathml(r"q_{\text{crank}} = 90^\circ")
     '<math><msub><mi>q</mi><mtext>crank</mtext></msub></math> <math><mo form="infix">=</mo><mn>90</mn><mo>°</mo></math>'
@@ -40,7 +40,7 @@ def mathml(latex: str) -> str:
     reader = _Reader(latex)
     parts: list[list[str]] = [[]]
     for atom in reader.atoms(""):
-        if reader.depth == 0 and atom in _BREAKS and parts[-1]:
+        if breaks and reader.depth == 0 and atom in _BREAKS and parts[-1]:
             # at the head of a part it would be taken for a sign, and be set close
             parts.append([atom.replace("<mo>", '<mo form="infix">')])
         else:
@@ -100,11 +100,15 @@ class _Reader:
         token = self.next()
         if token.isspace() or token == r"\,":
             return ""
+        if token == r"\:":
+            return '<mspace width="0.17em"></mspace>'
         if token in _WORDS:
             return f"<mtext>{safe(self.words())}</mtext>"
         if token == r"\overline":
             # a bar that stretches needs a font for mathematics; the bar over a text does not
             return self.group().replace("<mtext>", '<mtext class="over">')
+        if token == r"\sqrt":
+            return f"<msqrt>{self.group()}</msqrt>"
         if token in (r"\left", r"\right"):
             return self.bracket(self.next(), stretches=True)
         if token in DOTS:
@@ -179,3 +183,116 @@ def _single_token(token: str) -> str:
 
 # Before these a browser may break a long equation; inside of a term it may not.
 _BREAKS = tuple(f"<mo>{sign}</mo>" for sign in SIGNS.values())
+
+
+# Words, numbers, and what is between them in a sentence.
+_SYMBOL = re.compile(r"(theta|phi|[^\W\d_])(\d+)")
+_IN_SENTENCES = re.compile(r"(?:theta|phi|[^\W\d_])\d+|[^\W\d_]+(?:-[^\W\d_]+)*|\d+(?:\.\d+)?°?|\s+|.", re.DOTALL)
+# What is between two terms, and what a formula has at least one of.
+_BETWEEN, _TELLING = "=+-/^·", "=^"
+_ROOT, _ARTICLES = "sqrt", ("a", "A", "I")
+_GREEK = {"theta": r"\theta", "phi": r"\varphi"}
+_NAMED = {name.removeprefix("\\"): name for name in FUNCTIONS}
+
+
+def with_formulas(sentence: str, names: Collection[str] = ()) -> str:
+    r"""Return a text as HTML, with the formulas in it as mathematics.
+
+    A formula has "=" or "^" or a function. `names` are words that may follow a number or a letter, as in "2 arm".
+
+    >>> with_formulas("It rises by 2 sqrt(L^2 - x^2).").partition("<math>")[0]
+    'It rises by '
+    >>> with_formulas("a = b, less than c").count("<math>"), with_formulas("x-axis, and/or 3 + 4 of them")
+    (1, 'x-axis, and/or 3 + 4 of them')
+    """
+    plain = re.sub(r"(?<=\d) degrees(?= [-+=/])", "°", re.sub(r"(?<=[-+=/] )(\d[\d.]*) degrees\b", r"\1°", sentence))
+    tokens = _IN_SENTENCES.findall(plain)
+    parts: list[str] = []
+    k = 0
+    while k < len(tokens):
+        end = _end_of_formula(tokens, k, frozenset(names))
+        found = "".join(tokens[k:end]).strip()
+        if end > k and _is_formula(tokens[k:end]):
+            try:
+                parts.append(mathml(_as_latex(found), breaks=False))
+            except UnknownLatex:
+                parts.append(safe(found))
+            parts.append(" " * (tokens[end - 1].isspace()))
+            k = end
+        else:
+            # of a word of which a part would be a formula nothing is one
+            step = max(end, k + 1) if end > k and not tokens[k].isalpha() else k + 1
+            parts.append(safe("".join(tokens[k:step])))
+            k = step
+    return "".join(parts)
+
+
+def _is_formula(tokens: Sequence[str]) -> bool:
+    functions = any(one in (*_NAMED, _ROOT) for one in tokens)
+    return functions or any(one in _TELLING for one in tokens if not one.isspace())
+
+
+def _end_of_formula(tokens: Sequence[str], k: int, names: frozenset[str]) -> int:
+    """Return where terms and signs between them end that begin at a token; its own place where no term begins."""
+    end = _end_of_term(tokens, k, names)
+    while end > k:
+        after = _skipped(tokens, end)
+        if after >= len(tokens) or tokens[after] not in _BETWEEN:
+            break
+        further = _end_of_term(tokens, _skipped(tokens, after + 1), names, signed=True)
+        # a dash in a sentence, or an operator with nothing behind it
+        if further <= _skipped(tokens, after + 1):
+            break
+        end = further
+    return end
+
+
+def _skipped(tokens: Sequence[str], k: int) -> int:
+    while k < len(tokens) and tokens[k].isspace():
+        k += 1
+    return k
+
+
+def _end_of_term(tokens: Sequence[str], k: int, names: frozenset[str], signed: bool = False) -> int:
+    """Return where factors that stand beside each other end."""
+    begin = k
+    if signed and k < len(tokens) and tokens[k] == "-":
+        k = _skipped(tokens, k + 1)
+    end = begin
+    while k < len(tokens):
+        one = tokens[k]
+        if one == "(":
+            closes = _end_of_formula(tokens, k + 1, names)
+            if closes <= k + 1 or closes >= len(tokens) or tokens[closes] != ")":
+                break
+            k = closes + 1
+        elif one in (*_NAMED, _ROOT):
+            argument = _skipped(tokens, k + 1)
+            k = _end_of_term(tokens, argument, names)
+            if k <= argument:
+                break
+        elif one[0].isdigit() or one in names or _is_symbol(one) or (one[0].isalpha() and end == begin):
+            k += 1
+        else:
+            break
+        end, k = k, _skipped(tokens, k)
+        if one.isalpha() and len(one) > 1 and one not in names and one not in (*_NAMED, _ROOT):
+            break
+    return end
+
+
+def _is_symbol(token: str) -> bool:
+    return bool(_SYMBOL.fullmatch(token)) or (len(token) == 1 and token.isalpha() and token not in _ARTICLES)
+
+
+def _as_latex(formula: str) -> str:
+    """Return a formula of a sentence as LaTeX."""
+    found = re.sub(rf"\b{_ROOT}\(([^()]*)\)", r"\\sqrt{\1}", formula)
+    found = re.sub(r"\^(\w+)", r"^{\1}", found).replace("°", r"^\circ")
+    found = _SYMBOL.sub(lambda one: rf"{_GREEK.get(one[1], one[1])}_{{{one[2]}}}", found)
+    parts = re.split(r"(\\(?:sqrt|circ|theta|varphi)(?![a-z])|[^\W\d_]{2,}(?:-[^\W\d_]+)*)", found)
+    words = (
+        one if not one.strip("-").replace("-", "").isalpha() else _NAMED.get(one, rf"\text{{{one}}}") for one in parts
+    )
+    # factors that stand beside each other
+    return re.sub(r"(?<=[\w)}]) (?=[\w(\\])", r"\:", "".join(words))

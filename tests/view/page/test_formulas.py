@@ -11,7 +11,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.analysis.equations.expressions import latex, text
 from compoundkin.analysis.equations.loop_equations import loop_equations
-from compoundkin.view.page.mathml import UnknownLatex, mathml
+from compoundkin.view.page.mathml import UnknownLatex, mathml, with_formulas
 from compoundkin.view.report.report_data import FormulaBlock, Outcome, Section
 from compoundkin.view.report.report_forms import Report
 from tests import catalog
@@ -103,3 +103,50 @@ def test_what_it_does_not_know_is_shown_as_text(formula: str) -> None:
     section = Section("s", "S", (FormulaBlock("a < b", formula),))
     html = Report("R", (section,), Outcome(True)).html()
     assert '<p class="formula"><code>a &lt; b</code></p>' in html
+
+
+@pytest.mark.parametrize(
+    ("sentence", "formulas"),
+    [
+        ("The count says F = 0, yet it moves.", ["F=0"]),
+        ("It rises by 2 sqrt(L^2 - x^2).", ["2L2−x2"]),
+        ("They want cot(outer) - cot(inner) = track / wheelbase, so that", ["cot(outer)−cot(inner)=track/wheelbase"]),
+        ("on the shaft. sun = 2 arm - rod.", ["sun=2arm−rod"]),
+        ("with the acceleration r w^2 upwards", ["rw2"]),
+        ("between them: theta5 = 2 theta2 + 30 degrees. Both", ["θ5=2θ2+30°"]),
+        ("by tan 15 degrees = 0.268 of it", ["tan15°=0.268"]),
+        ("the line y = 4 at three places", ["y=4"]),
+        ("x-axis, and/or 3 + 4 of them at 0 and 180 degrees, a pin (in a slot), 2-dof", []),
+    ],
+)
+def test_formulas_in_sentences(sentence: str, formulas: list[str]) -> None:
+    html = with_formulas(sentence, ("arm", "rod", "sun"))
+    found = re.findall(r"(?:<math>(?:(?!</math>).)*</math> ?)+", html)
+    assert [re.sub(r"<[^>]+>| ", "", one) for one in found] == formulas
+    ElementTree.fromstring(f"<all>{html}</all>")
+    # nothing of the sentence around them is lost
+    rest = re.sub(r"<math>.*</math>", "#", html) if formulas else html
+    before, _, after = rest.partition("#")
+    assert sentence.startswith(before.rstrip())
+    assert sentence.endswith(after.lstrip())
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a = ",
+        "= b",
+        "((a = 2",
+        "x^",
+        "sqrt(",
+        "sqrt()",
+        "a = <b>",
+        "\\text{a} = 1",
+        "é = 1",
+        "a^b^c",
+        "a = b_c",
+        "2^(a+b)",
+    ],
+)
+def test_any_text_is_written(text: str) -> None:
+    ElementTree.fromstring(f"<all>{with_formulas(text)}</all>")
