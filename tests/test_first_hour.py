@@ -140,7 +140,7 @@ def test_degrees_may_be_written_and_places_stand_in_the_order_of_a_list(run: Run
 def test_percentiles_are_those_asked_for(run: Run) -> None:
     words = ("tolerance", FOUR_BAR, "--tolerance", "crank.B.x=\u00b10.05", "--output", "rocker.angle.stroke")
     result = run(*words, "--percentile", "5,95", "--count", "512")
-    rows = [line.split() for line in result.stdout.splitlines() if line.startswith("rocker.angle.stroke  deg       - ")]
+    rows = [line.split() for line in result.stdout.splitlines() if line.startswith("rocker.angle.stroke  °         - ")]
     low, high = (float(row[4]) for row in rows if row[3] in ("5", "95"))
     deviation = float(rows[0][-1])
     assert high - low == pytest.approx(2 * 1.645 * deviation, rel=0.1)  # of a normal distribution
@@ -175,7 +175,7 @@ def test_a_study_of_a_linkage_needs_no_file(run: Run) -> None:
         strokes.append(np.degrees(ends[0] - ends[1]))
     assert "64 designs" in result.stdout
     rows = [line.split() for line in run(*words, "--seed", "3").stdout.splitlines() if line.startswith("rocker.angle")]
-    numbers = [float(one) for row in rows for one in row[1:] if one != "deg"]
+    numbers = [float(one) for row in rows for one in row[1:] if one != "°"]
     assert len(numbers) == 7
     assert abs(strokes[0]) - 0.01 <= min(numbers) <= max(numbers) <= abs(strokes[1]) + 0.01
 

@@ -467,7 +467,7 @@ def test_the_text_of_harmonics_has_phases_in_degrees() -> None:
     """m r w^2 turns with the crank; its moment of weight is 20 N m cos, its torque the first order alone."""
     forces = ck.force_analysis(ck.solve(pendulum(), TURN, speed=3))
     torque = ck.figures.harmonics(forces, "arm.effort", orders=2).text()
-    assert torque.splitlines()[0] == "arm.effort [N mm, N m, deg]"
+    assert torque.splitlines()[0] == "arm.effort [N mm, N m, °]"
     assert numbers(torque, "1") == [20000, 20, 0]
     assert numbers(torque, "2") == [0, 0, 0]
     shaking = ck.figures.harmonics(forces, orders=2).text()

@@ -457,7 +457,7 @@ class PlottedCurve:
     def line(self, curve: Plotted, design: int) -> tuple[Number, Number]:
         """Return x and y of a curve. It goes as far as limit positions, unless it grows without limit there.
 
-        A pose at a jump gives way to its two sides; NaN parts what passes infinity.
+        A pose at a jump gives way to its two sides, which NaN parts, as it does what passes infinity.
         """
         x, y = self.x.values[design], curve.values[design]
         mine = self.more.at.design == design
@@ -470,7 +470,10 @@ class PlottedCurve:
         order = np.argsort(np.concatenate([poses[kept], place]))
         new = (axis_values_at(self.motion, self.x, self.more.at.some(mine)), self._values(curve)[mine])
         across, up = (np.concatenate([row[kept], one])[order] for row, one in zip((x, y), new, strict=True))
-        return curve.parted(self.x, across, up)
+        there = np.concatenate([poses[kept], place])[order]
+        jumps = (np.diff(there) <= SAME_PLACE) & (np.abs(np.diff(up)) > JUMP * curve.scale)
+        after = np.flatnonzero(jumps) + 1
+        return curve.parted(self.x, np.insert(across, after, across[after]), np.insert(up, after, np.nan))
 
     def _values(self, curve: Plotted) -> Number:
         found = np.asarray(quantity(self.solved, curve.name).values)
@@ -480,6 +483,8 @@ class PlottedCurve:
 # Curves of fewer poses than these are solved between them, so that they are smooth; many designs together no more often
 # than so.
 SMOOTH, MOST = 240, 20000
+# Values of both sides of a place that differ by more than this part of the scale are a jump, and no line joins them.
+JUMP = 1e-9
 # So many places lead from the last pose to a limit position, towards which curves bend.
 TO_LIMITS = 12
 

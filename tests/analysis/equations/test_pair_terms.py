@@ -79,7 +79,7 @@ def test_what_only_its_closure_says_is_written_as_a_function(oldham: Any) -> Non
     keys = [unknown.key for unknown in equations.unknowns]
     if "x(tray/frame)" in keys:
         assert text(own) == "F1[tray/frame](tray, x(tray/frame), y(tray/frame)) = 0"
-        assert text(loop).endswith("- y(tray/frame) e^(i (90°)) - x(tray/frame) = 0")
+        assert text(loop).endswith("- y(tray/frame) e^(i 90°) - x(tray/frame) = 0")
         said = [block.text for block in equations_section(equations).blocks if isinstance(block, Paragraph)]
         assert IMPLICIT_FUNCTIONS.format(pairs="tray/frame") in said
     else:

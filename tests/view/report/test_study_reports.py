@@ -39,7 +39,7 @@ def test_errors_are_those_of_the_analysis_in_degrees() -> None:
     found = tolerances()[ANGLE]
     pose = int(np.argmax(found.deviation))
     (heads, rows), (_, sampled) = tables(ck.report(tolerances()), "errors")
-    assert heads == ["output", "unit", "crank [°]", "nominal", "worst low", "worst high", "deviation"]
+    assert heads == ["output", "unit", "crank [deg]", "nominal", "worst low", "worst high", "deviation"]
     own = [float(np.rad2deg(values[pose])) for values in (found.nominal, found.low, found.high, found.deviation)]
     assert rows[0][:2] == [ANGLE, "deg"]
     assert rows[0][2:] == pytest.approx([np.rad2deg(TURN[pose]), *own], rel=1e-3)
@@ -53,7 +53,7 @@ def test_contributions_come_by_their_shares() -> None:
     assert len(every) == 1
     heads, rows = every[0]
     found = tolerances()[STROKE]
-    assert heads == ["source", "lower", "upper", "unit", "share [%]", "worst case [°]", "deviation [°]"]
+    assert heads == ["source", "lower", "upper", "unit", "share [%]", "worst case [deg]", "deviation [deg]"]
     shares = {row[0]: row[4] for row in rows}
     assert list(shares.values()) == sorted(shares.values(), reverse=True)
     for name, share in found.contributions.items():
@@ -63,7 +63,7 @@ def test_contributions_come_by_their_shares() -> None:
 
 def test_bands_stand_at_the_poses() -> None:
     ((heads, rows),) = tables(ck.report(tolerances(), [ANGLE]), "bands")
-    assert heads[:2] == ["crank [°]", "rocker.angle [°]"]
+    assert heads[:2] == ["crank [deg]", "rocker.angle [deg]"]
     assert [row[0] for row in rows] == pytest.approx(np.rad2deg(TURN).tolist())
     assert [row[2] for row in rows] == pytest.approx(np.rad2deg(tolerances()[ANGLE].worst).tolist(), rel=1e-3)
 

@@ -102,7 +102,7 @@
         cursor: { x: false, y: false, points: { show: false }, drag: { x: true, y: false, setScale: false }, bind },
         axes: [
           { ...style, values: wide, label: this.axis.label, size: 34, ...this.axis.incrs },
-          { ...style, values: wide, label: unit === "deg" ? "degrees" : page.raised(unit), size: 58 },
+          { ...style, values: wide, label: page.raised(unit), size: 58 },
         ],
         series: [{}, ...Object.keys(parts).map((part, k) => ({
           stroke: () => colour(PARTS[part]), width: part === "length" ? 1.5 : 2, dash: part === "length" ? DASH.map((long) => long * devicePixelRatio) : undefined,
