@@ -7,7 +7,7 @@ dimensions that can be changed one by one are inputs: the mechanism can still be
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import NamedTuple
@@ -67,6 +67,21 @@ class PageProgram(ShortRepr):
     mechanism: RecordedMechanism
     outputs: tuple[ProgramOutput, ...]
     recorded: tuple[RecordedNumber, ...]
+    # what else it computes, last of all, and the rows that are given for that
+    more: tuple[int, ...] = ()
+    rows: tuple[InputNumber, ...] = ()
+
+    def with_more(self, nodes: Sequence[int], rows: Iterable[InputNumber]) -> PageProgram:
+        """Return it with further nodes, which may depend on `rows` that are known at the poses.
+
+        Raises InvalidInput where they depend on anything else that the program is not given.
+        """
+        graph, rows = self.mechanism.graph, tuple(rows)
+        known = {*self.drives, *self.seeds, *rows, *(one.inputs[0] for one in self.mechanism.recording.free)}
+        for given in (graph.nodes[k].given for k in graph.inputs(nodes)):
+            if given is not None and given not in known:
+                raise InvalidInput(Problem(given.full_name, "the program of a page is not given it"))
+        return replace(self, more=tuple(nodes), rows=rows)
 
     @classmethod
     def of(cls, motion: Motion, outputs: Sequence[ProgramOutput] = ()) -> PageProgram:
@@ -192,9 +207,11 @@ class PageProgram(ShortRepr):
         found = carried_states(self.mechanism, [k for part in self._results for k in part])
         return found[: len(self.seeds)], found[len(self.seeds) :]
 
-    def own(self, nodes: Sequence[int], poses: Number) -> list[Number]:
-        """Return values of nodes, with the mechanism's own dimensions, at some poses."""
-        motion, given = self.motion, seed_values(self.seeds, self.motion)
+    def own(
+        self, nodes: Sequence[int], poses: Number, rows: Mapping[InputNumber, Number] = MappingProxyType({})
+    ) -> list[Number]:
+        """Return values of nodes, with the mechanism's own dimensions, at some poses; `rows` are (designs, poses)."""
+        motion, given = self.motion, {**seed_values(self.seeds, self.motion), **rows}
         for one in self.drives:
             given[one] = np.broadcast_to(motion.inputs.drives[one.name][int(one.part)], motion.failed.shape)
         numbers: dict[InputNumber, Number] = {one: values[0, poses] for one, values in given.items()}
@@ -204,7 +221,7 @@ class PageProgram(ShortRepr):
 
     @cached_property
     def table(self) -> OperationTable:
-        """Its operations, in four sections: what closes groups, positions, rates and outputs, reasons."""
+        """Its operations, in five sections: what closes groups, positions, rates and outputs, reasons, what else."""
         closing, places, rates = self._results
         carried = (one.now.x for part in self.carried for one in part)
         reasons = (node for each in self.reasons for one in each for node in (one.holds, *one.words))
@@ -212,8 +229,10 @@ class PageProgram(ShortRepr):
         shown = {one.inputs[0]: None for one in self.dimensions}
         free = self.mechanism.recording.free
         known = {one.inputs[0]: float(np.ravel(self.stated.own(one))[0]) for one in free if one.inputs[0] not in shown}
-        sections = _once((*closing, *carried)), places, rates, told
-        return operation_table(self.mechanism.graph, sections, tuple(shown), (*self.drives, *self.seeds), known)
+        sections = _once((*closing, *carried)), places, rates, told, _once(self.more)
+        return operation_table(
+            self.mechanism.graph, sections, tuple(shown), (*self.drives, *self.seeds, *self.rows), known
+        )
 
 
 def _once(nodes: Iterable[int]) -> tuple[int, ...]:

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 import compoundkin as ck
+from compoundkin.view.page.live.live_data import LiveData
+from compoundkin.view.page.motion_data import MotionData
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.sketch.shapes import ShapeGroup, leaves
+from tests import catalog
 from tests.view.loaded import MASS, REACH, crank, crank_forces, six_bar_forces
 
 
@@ -55,3 +59,16 @@ def test_rounding_of_forces_is_zero_in_tables() -> None:
     largest = float(np.abs(force.values).max())
     assert 1e-13 * largest < sample.floor(effort) < 1e-9 * largest
     assert np.abs(effort.values).max() <= sample.floor(effort)
+
+
+@pytest.mark.parametrize(
+    ("name", "is_live"),
+    # a general group and a spring, a table over the crank, gears; a guide that rubs, a table over the ram
+    [("andrews-squeezer-dynamics", True), ("engine-gas-pressure", True), ("planetary-train-torques", True),
+     ("shaper-cutting-force", False), ("geared-press", False)],
+)  # fmt: skip
+def test_pages_have_the_program_of_forces_where_it_reproduces_them(name: str, is_live: bool) -> None:
+    motion = catalog.motion(name)
+    moving = MotionData(Sample(motion, 0), most=9, with_centres=True)
+    found = LiveData(motion, moving.chosen, moving.links, moving.outputs, moving.drawn_forces).forces
+    assert (found is not None) == is_live

@@ -204,13 +204,14 @@ class EndSeparation(NamedTuple):
         """The rate of its length; ends that coincide move apart with their whole speed."""
         with np.errstate(all="ignore"):
             along = dot(self.vector, self.velocity) / self.length
-        return np.where(np.asarray(self.length) == 0.0, np.abs(self.velocity), along)
+        return np.where(self.length == 0.0, np.abs(self.velocity), along)
 
     def along(self, pull: Number, where: str) -> Number:
         """Return a pull as a vector. Warns, naming `where`, if ends coincide, where it has no direction."""
-        length, vector = np.asarray(self.length), np.asarray(self.vector)
-        meeting = (length == 0.0) & (np.asarray(pull) != 0.0)
-        if np.any(meeting):
+        length, vector = self.length, self.vector
+        meeting = (length == 0.0) & (pull != 0.0)
+        # what is recorded is of no pose yet
+        if isinstance(meeting, np.ndarray | np.bool_ | bool) and np.any(meeting):
             warn(f"{where}: its ends coincide, where its force has no direction", LikelySlip)
         with np.errstate(all="ignore"):
             return np.where(length == 0.0, np.where(meeting, np.nan, 0.0), pull * vector / length)

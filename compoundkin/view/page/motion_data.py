@@ -26,6 +26,7 @@ from compoundkin.model.attributes import (
     derivative_order,
     unit_of,
 )
+from compoundkin.view.page.live.live_data import DrawnForces
 from compoundkin.view.page.live.live_sketch import live_sketch
 from compoundkin.view.page.markup import component_values, packed_doubles, packed_floats
 from compoundkin.view.report.pose_sample import Sample
@@ -135,7 +136,7 @@ class MotionData:
             "parts": self._parts,
             **self._overlays(),
             "outputs": [self._quantity(self.sample.quantity(name), packed_floats) for name in self.outputs],
-            "live": live_sketch(self.sample, self.chosen, self.links, self.outputs, self.sketch),
+            "live": live_sketch(self.sample, self.chosen, self.links, self.outputs, self.sketch, self.drawn_forces),
         }
 
     @cached_property
@@ -143,9 +144,19 @@ class MotionData:
         """The forces of the motion, where it has loads."""
         return loaded_forces(self.motion) if self.with_centres else None
 
+    @cached_property
+    def drawn_forces(self) -> DrawnForces | None:
+        """The forces that are drawn, None where nothing acts."""
+        if self.forces is None:
+            return None
+        arrows, arcs = (drawn(self.forces, self.sketch.scene, self.sketch.design)
+                        for drawn in (drawn_force_courses, drawn_moment_courses))  # fmt: skip
+        return DrawnForces(self.forces, arrows, arcs) if arrows or arcs else None
+
     def _overlays(self) -> dict[str, Any]:
         """Return the vectors, instant centres and forces that the sketch can show."""
-        found = force_data(self.sketch, self.forces, self._numbers, self.chosen) if self.forces is not None else {}
+        drawn = self.drawn_forces
+        found = {} if drawn is None else force_data(self.sketch, drawn, self._numbers, self.chosen)
         return {"vectors": dict(self._vectors()), **self._centres(), **({"forces": found} if found else {})}
 
     @property
@@ -247,20 +258,17 @@ def _lines(centres: Centres, index: Mapping[tuple[str, ...], int]) -> Iterator[l
                 yield [index[tuple(sorted(step.centre))], *known]
 
 
-def force_data(sketch: MovingSketch, forces: Forces, links: Mapping[str, int], chosen: Number) -> dict[str, Any]:
+def force_data(sketch: MovingSketch, drawn: DrawnForces, links: Mapping[str, int], chosen: Number) -> dict[str, Any]:
     """Return the arrows of forces and the arcs of moments at some poses, each with place, kind, name and text.
 
-    Arrows are to one scale, arcs to none. Empty where nothing acts.
+    Arrows are to one scale, arcs to none.
     """
-    courses = drawn_force_courses(forces, sketch.scene, sketch.design)
-    turning = drawn_moment_courses(forces, sketch.scene, sketch.design)
+    forces, courses, turning = drawn
     scales = force_scales(forces, sketch.window.diagonal, courses)
-    if not scales and not turning:
-        return {}
     kinds = dict.fromkeys((*(scale.kind for scale in scales), *(one.shown.kind for one in turning)))
     arrows, arcs = ([_placed_course(forces, one, links, chosen, sketch.design) for one in found]
-                    for found in (courses if scales else (), turning))  # fmt: skip
-    for one, data in zip(courses, arrows, strict=False):
+                    for found in (courses, turning))  # fmt: skip
+    for one, data in zip(courses, arrows, strict=True):
         force = one.force[chosen]
         data |= {"name": one.shown.name, "force": [packed_floats(force.real), packed_floats(force.imag)]}
     for one, data in zip(turning, arcs, strict=True):

@@ -332,7 +332,7 @@ def _lowered(scene: Scene, *links: str) -> str:
 
 
 def _course(one: LinkWrench, design: int, name: str, turning: str) -> ForceCourse:
-    description = f"{one.kind} {one.name} on {one.on}" + (f" by {one.by}" if one.by else "")
+    description = described_wrench(one.kind, one.name, one.on, one.by)
     kind = REACTION if one.kind in (PAIR, DRIVER, FRICTION) else INERTIA if one.kind == OF_INERTIA else LOAD
     shown = ActingForce(name, turning, description, one.on, one.by, kind, 0j, 0j, 0.0, one.kind == DRIVER)
 
@@ -341,6 +341,15 @@ def _course(one: LinkWrench, design: int, name: str, turning: str) -> ForceCours
         return rows[min(design, len(rows) - 1)]
 
     return ForceCourse(shown, row(one.place), row(one.force), row(one.moment))
+
+
+def described_wrench(kind: str, name: str, on: str, by: str) -> str:
+    """Return in words what acts on a link.
+
+    >>> described_wrench("pair", "A", "rod", "crank")
+    'pair A on rod by crank'
+    """
+    return f"{kind} {name} on {on}" + (f" by {by}" if by else "")
 
 
 def drawn_force_courses(forces: Forces, scene: Scene, design: int) -> tuple[ForceCourse, ...]:

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.view.sketch.force_arrows import drawn_moment_courses
+from compoundkin.programs.dimensions import StatedDimensions, mechanism_with
+from compoundkin.view.sketch.force_arrows import drawn_moment_courses, force_courses
 from compoundkin.view.sketch.kinematic_sketch import moving_sketch
+from tests import catalog
 from tests.view.loaded import six_bar_forces
 
 from .conftest import PHONE
@@ -65,6 +67,46 @@ def test_arrows_and_arcs_have_names(loaded_page: Path, opened: Any) -> None:
     sweeps = view.value("""() => [...document.querySelectorAll('svg .forces path[fill=none]')].map((p) =>
         Number(p.getAttribute('d').split('A')[1].split(' ')[4]))""")  # fmt: skip
     assert [-1 if sweep else 1 for sweep in sweeps] == heads
+    assert view.complaints == []
+
+
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        ("engine-gas-pressure", {"rod.B.x": 1.1, "crank.A.x": 0.9}),
+        ("planetary-train-torques", {}),
+        ("andrews-squeezer-dynamics", {"K2.F.x": 1.01}),
+    ],
+)
+def test_forces_follow_changed_dimensions(name: str, changes: dict[str, float], made: Any, opened: Any) -> None:
+    """Those of a mechanism that is solved and analysed anew with the numbers of the page."""
+    view, motion = opened(made(name)), catalog.motion(name)
+    own = dict(view.value(f"() => {PLAYER}.path.names.map((name, k) => [name, {PLAYER}.path.own[k]])"))
+    changes = changes or {next(key for key, value in own.items() if value): 1.02}
+    changes = {key: own[key] * by for key, by in changes.items()}
+    view.check('[data-show="forces"]')
+    view.value(f"changes => {PLAYER}.design.change(changes)", changes)
+    found = view.value(f"""() => [...{FORCES}.forces, ...{FORCES}.moments].map((one) => {{
+        const own = {FORCES}.own(one);
+        return [one.told, ...[...own.at, ...own.force, own.moment].map((part) => [...part])]; }})""")  # fmt: skip
+    stated = StatedDimensions(motion.mechanism, motion.inputs.ends)
+    changed = mechanism_with(stated, {stated.known[key]: value for key, value in changes.items()})
+    forces = ck.force_analysis(ck.solve(changed))
+    known = {
+        one.shown.description: one
+        for own in force_courses(forces, moving_sketch(forces.motion).scene, 0).values()
+        for one in own
+    }
+    scale = max(np.nanmax(np.abs(one.force)) for one in known.values())
+    assert found
+    for told, x, y, fx, fy, moment in found:
+        one = known[told]
+        at, force, turning = (np.array(part, dtype=float) for part in ((x, y), (fx, fy), moment))
+        good = np.isfinite(one.force) & np.isfinite(force[0])
+        assert np.count_nonzero(good) > len(good) / 2
+        assert np.allclose((force[0] + 1j * force[1])[good], one.force[good], rtol=0, atol=1e-8 * scale)
+        assert np.allclose((at[0] + 1j * at[1])[good], one.at[good], rtol=0, atol=1e-9 * forces.motion.size)
+        assert np.allclose(turning[good], one.moment[good], rtol=0, atol=1e-8 * scale * forces.motion.size)
     assert view.complaints == []
 
 

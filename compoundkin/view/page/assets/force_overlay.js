@@ -1,4 +1,4 @@
-// Forces over the sketch: arrows to one scale and arcs of moments, with their names; they are of the page's own dimensions.
+// Forces over the sketch: arrows to one scale and arcs of moments, with their names.
 (() => {
   "use strict";
   const page = window.compoundkin;
@@ -17,14 +17,24 @@
     constructor(overlays) {
       const { player } = overlays, { data } = player, open = (text) => page.unpacked(text, data.poses);
       Object.assign(this, { overlays, player, data: data.forces, layer: overlays.layers.forces });
-      const placed = (one) => ({ ...one, at: one.at && one.at.map(open) });
-      this.forces = (data.forces?.arrows ?? []).map((one) => ({ ...placed(one), force: one.force.map(open) }));
-      this.moments = (data.forces?.moments ?? []).map((one) => ({ ...placed(one), moment: open(one.moment) }));
+      const placed = (one, index) => ({ ...one, index, at: one.at && one.at.map(open) });
+      this.forces = (data.forces?.arrows ?? []).map((one, k) => ({ ...placed(one, k), force: one.force.map(open) }));
+      this.moments = (data.forces?.moments ?? []).map((one, k) => ({ ...placed(one, k), moment: open(one.moment) }));
       for (const one of this.moments) one.most = one.moment.reduce((most, value) => Math.max(most, Math.abs(value) || 0), 0);
     }
-    // they are those of the dimensions that the page came with
+    // of other dimensions where the page's program has them
     get isShown() {
-      return Boolean(this.data) && this.overlays.shown.has("forces") && !this.overlays.isChanged;
+      return Boolean(this.data) && this.overlays.shown.has("forces") && (!this.overlays.isChanged || this.isLive);
+    }
+    get isLive() {
+      return Boolean(this.player.data.live?.forces);
+    }
+    // those of other dimensions, computed when they are first shown; null for the ones that the page came with
+    get changed() {
+      if (!this.overlays.isChanged) return null;
+      const { path, design: { solved } } = this.player;
+      if (this.of !== solved) Object.assign(this, { of: solved, found: path.acting(solved) });
+      return this.found;
     }
     // the rows below the picture: style, words, length of the arrow
     get keys() {
@@ -34,12 +44,20 @@
       return [...scale, ...Object.entries(kinds).map(([kind, words]) => [kind, words, KEY]), ...arcs];
     }
     // where it acts: at a point of its link, or where it was told for every pose
-    acts({ at, link, x, y }, k = this.player.pose) {
-      return at ? at.map((values) => values[k]) : this.player.at(link, x, y, k);
+    acts(one, k = this.player.pose) {
+      const at = this.own(one)?.at ?? one.at;
+      return at ? at.map((values) => values[k]) : this.player.at(one.link, one.x, one.y, k);
+    }
+    // an arrow or an arc as it is with other dimensions
+    own({ index, moment }) {
+      return this.changed?.[moment ? "arcs" : "arrows"][index];
     }
     force(one, k = this.player.pose) {
-      const { scale } = this.data;
-      return [this.player.paper(this.acts(one, k)), [one.force[0][k] * scale, -one.force[1][k] * scale]];
+      const { scale } = this.data, [x, y] = (this.own(one) ?? one).force;
+      return [this.player.paper(this.acts(one, k)), [x[k] * scale, -y[k] * scale]];
+    }
+    moment(one, k = this.player.pose) {
+      return (this.own(one) ?? one).moment[k];
     }
     // where each arrow begins and which way it goes at every pose, with the room of its name; arcs as far as they reach
     *arrows() {
@@ -61,7 +79,7 @@
       }
     }
     turns(one, k = this.player.pose) {
-      return Math.abs(one.moment[k]) >= FAINT * one.most && one.most > 0;
+      return Math.abs(this.moment(one, k)) >= FAINT * one.most && one.most > 0;
     }
     radius({ driver }) {
       return driver ? AROUND_DRIVER : ROUND;
@@ -79,12 +97,12 @@
       for (const [one, at, way] of arrows) overlays.arrow(at, way, one.kind, drawn(one, Math.hypot(...way) / scale, forces));
       const around = [];
       for (const one of this.moments) {
-        const { pose } = this.player, at = this.player.paper(this.acts(one));
+        const at = this.player.paper(this.acts(one));
         if (!this.turns(one) || !Number.isFinite(at[0] + at[1])) continue;
         const radius = this.radius(one) + NEXT * around.filter((other) => Math.hypot(other[0] - at[0], other[1] - at[1]) < 1).length;
         around.push(at);
         const outward = this.free(one, at, radius, arrows);
-        this.arc(at, outward, radius, Math.sign(one.moment[pose]), one.kind, drawn(one, one.moment[pose], turning));
+        this.arc(at, outward, radius, Math.sign(this.moment(one)), one.kind, drawn(one, this.moment(one), turning));
         this.name(one, taken, this.besides([at[0] + outward[0] * radius, at[1] + outward[1] * radius], outward, one.name));
       }
       for (const [one, [x, y], [dx, dy]] of arrows) {

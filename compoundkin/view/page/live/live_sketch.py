@@ -26,7 +26,7 @@ from compoundkin.programs.page_program import operation_table
 from compoundkin.programs.recording.recorded_mechanism import recorded_ends, recorded_geometry
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.view.page.live.compact_data import table_data
-from compoundkin.view.page.live.live_data import live_data
+from compoundkin.view.page.live.live_data import DrawnForces, live_data
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.sketch.kinematic_sketch import MovingPart, MovingSketch, carried_parts, carried_shapes
 from compoundkin.view.sketch.painter import ON_LINE, SAME, Painter
@@ -54,10 +54,15 @@ PLACE, TURN = ("x", "y"), ("cos", "sin")
 
 
 def live_sketch(
-    sample: Sample, chosen: Any, links: Sequence[str], outputs: Sequence[str], sketch: MovingSketch
+    sample: Sample,
+    chosen: Any,
+    links: Sequence[str],
+    outputs: Sequence[str],
+    sketch: MovingSketch,
+    forces: DrawnForces | None = None,
 ) -> dict[str, Any] | None:
     """Return the data of a live sketch, or why it cannot be live; None for a single pose."""
-    live = live_data(sample, chosen, links, outputs)
+    live = live_data(sample, chosen, links, outputs, forces)
     if live is None or "why" in live:
         return live
     redraw = redrawn_parts(sketch, [one["name"] for one in live["dimensions"]])

@@ -63,7 +63,7 @@
       put(this.undo, !(design.canUndo || isChanged));
       put(this.redo, !design.canRedo);
       put(this.reset, !isChanged);
-      const told = isChanged ? ["Dimensions are changed.", ...this.gaps(), ...(player.data.forces ? [FORCES] : [])].join(" ") : HINT;
+      const told = isChanged ? ["Dimensions are changed.", ...this.gaps(), ...(player.data.forces && !player.overlays.forces.isLive ? [FORCES] : [])].join(" ") : HINT;
       if (this.words.textContent !== told) this.words.textContent = told;
       this.ghost.follow();
     }

@@ -44,6 +44,9 @@
       this.whole = new page.Machine(this.program, data.poses);
       this.one = new page.Machine(this.program, 1);
       this.drives.flat().forEach((values, k) => this.whole.rows[k].set(values));
+      // amounts of loads that hang on drivers and the time alone
+      const before = 3 * this.drives.length + live.states.length;
+      (live.forces?.rows ?? []).forEach((text, k) => this.whole.rows[before + k].set(page.unpacked(text, data.poses)));
       this.states = new page.States(live, this.program, { start: this.start, values: this.drives.map(([values]) => values), single: this.one });
       this.home = { numbers: this.own, values: live.states.map(({ own }) => page.unpacked(own, data.poses)), sides: null };
     }
@@ -70,6 +73,20 @@
       };
       const told = rates ? Object.fromEntries(outputs.map((one) => [one.name, this.output(one, known)])) : null;
       return new Solved({ numbers: Float64Array.from(numbers), assembled, failed, links: links.map(moved), outputs: told, states });
+    }
+    // what acts on links at all poses of a design: place, force and moment of each arrow and arc
+    acting({ numbers, states, failed }) {
+      const machine = this.whole, { arrows, arcs } = this.data.forces;
+      machine.take(numbers);
+      if (states) this.states.give(machine, states.values);
+      machine.run(0, this.program.ends[4]);
+      const known = (place) => {
+        const found = machine.copy(place);
+        for (let k = 0; k < found.length; k++) if (failed[k]) found[k] = NaN;
+        return found;
+      };
+      const of = (places) => { const [x, y, fx, fy, moment] = places.map(known); return { at: [x, y], force: [fx, fy], moment }; };
+      return { arrows: arrows.map(of), arcs: arcs.map(of) };
     }
     // the states to begin with: of a design nearby, or of the mechanism as it was
     near(solved) {
