@@ -21,6 +21,7 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError, InvalidInput, InvalidMechanism, Problem, suggestion
+from compoundkin.base.poses import Pose
 from compoundkin.files import toml_text
 from compoundkin.files.mechanism_files import changed_text
 from compoundkin.files.parsed_document import Syntax, located, parsed
@@ -31,13 +32,18 @@ from compoundkin.model.geometry import FRAME, Geometry
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import WRITTEN
 from compoundkin.model.pairs.contract import Pair, as_drivable
+from compoundkin.model.pairs.cylinder import Stroke
+from compoundkin.model.pairs.symbols import Groove, Outline, Wheel
 from compoundkin.structure import Fault, Structure, decompose
-from compoundkin.studio.edits import Document, Placement, edited
+from compoundkin.studio.edited_document import Document, Placement
+from compoundkin.studio.edits import edited
 
 Reply: TypeAlias = dict[str, Any]
 
 # A document may have so many characters and links, a motion so many poses.
 MOST_TEXT, MOST_LINKS, MOST_POSES = 200_000, 400, 721
+# What may be done is asked of so many edits at once.
+MOST_OFFERS = 40
 # A driver that states a range, and one that turns fully, is solved at so many poses: as the window shows them.
 POSES = 361
 # So many times something is set aside before the rest is given up.
@@ -207,20 +213,27 @@ def _at_its_place(problem: Problem, name: str) -> Problem:
 
 
 def _range(mechanism: Mechanism) -> dict[str, Number] | None:
-    """Return the values of the only driver as finely as they are shown, from its first to its last."""
-    if len(mechanism.drives) != 1 or mechanism.drives[0].law is not None or mechanism.prescribed_motions:
+    """Return the values of drivers as finely as they are shown: of each from its first to its last, all together."""
+    if not mechanism.drives or mechanism.prescribed_motions or any(drive.law is not None for drive in mechanism.drives):
         return None
-    drive = mechanism.drives[0]
+    ranges = {drive.name: _values(mechanism, drive, len(mechanism.drives) > 1) for drive in mechanism.drives}
+    known = {name: values for name, values in ranges.items() if values is not None}
+    return known if len(known) == len(ranges) else None
+
+
+def _values(mechanism: Mechanism, drive: Any, is_one_of_several: bool) -> Number | None:
+    """Return the values of a driver; None where it has none that are known here."""
     if drive.values is None:
         pairs = {pair.name for pair in mechanism.written_pairs if not pair.free_is_angle}
-        if pairs & set(mechanism.drivable(drive)):
-            return None
-        return {drive.name: np.deg2rad(np.arange(POSES, dtype=float))}
+        return None if pairs & set(mechanism.drivable(drive)) else np.deg2rad(np.arange(POSES, dtype=float))
     values = np.atleast_1d(np.asarray(drive.values, float))
     steps = np.diff(values)
     if values.ndim == 1 and len(values) > 2 and (np.all(steps > 0) or np.all(steps < 0)):
-        return {drive.name: np.linspace(values[0], values[-1], POSES)}
-    return {drive.name: values.reshape(-1, values.shape[-1])[0][:MOST_POSES]}
+        return np.linspace(values[0], values[-1], POSES)
+    if is_one_of_several:
+        # values that go to and fro go with those of the others as they are written
+        return None
+    return np.asarray(values.reshape(-1, values.shape[-1])[0][:MOST_POSES])
 
 
 # --- where everything is ------------------------------------------------------------------------------------
@@ -373,8 +386,9 @@ def _structure(document: str, question: Mapping[str, Any]) -> Reply:
         ],
         "points": {k: [p.real, p.imag] for k, p in drawing.places.items() if k in carriers},
         "angles": {name: cmath.phase(along) for name, (_, along) in drawing.poses.items()},
+        "origins": {name: [origin.real, origin.imag] for name, (origin, _) in drawing.poses.items()},
         "pins": {letter: names for letter, names in carriers.items() if len(names) > 1},
-        "pairs": list(_pairs(mechanism)) if mechanism else [],
+        "pairs": list(_pairs(mechanism, drawing)) if mechanism else [],
         "drives": [
             {
                 "name": name,
@@ -406,8 +420,8 @@ def _colours(structure: Structure | None) -> dict[str, int]:
     return found
 
 
-def _pairs(mechanism: Mechanism) -> Iterator[dict[str, Any]]:
-    """Yield the pairs that are no pins; those with a line, where it lies in the frame of the first link."""
+def _pairs(mechanism: Mechanism, drawing: Placement) -> Iterator[dict[str, Any]]:
+    """Yield the pairs that are no pins: those with a line, where it lies in the frame of the first link; shapes."""
     geometry: Geometry | None = None if mechanism.unplaced else mechanism.geometry
     for pair in mechanism.written_pairs:
         told: dict[str, Any] = {"name": pair.name, "kind": pair.title, "code": pair.code}
@@ -417,7 +431,28 @@ def _pairs(mechanism: Mechanism) -> Iterator[dict[str, Any]]:
             if guide.direction is not None:
                 point, along = (complex(np.ravel(np.asarray(one))[0]) for one in (guide.point, guide.direction))
                 told["guide"] = [point.real, point.imag, cmath.phase(along)]
+            told["shapes"] = list(_shapes(pair, pair.ends(geometry), drawing)) if pair.code != "P" else []
+        told["is_cylinder"] = isinstance(pair, Stroke)
         yield told
+
+
+# A profile is told by so many points at most.
+PROFILE = 240
+
+
+def _shapes(pair: Pair, ends: Any, drawing: Placement) -> Iterator[dict[str, Any]]:
+    """Yield wheels and profiles of a pair, each in the frame of its link."""
+    lying = [drawing.poses.get(name, (0j, 1 + 0j)) for name in pair.members]
+    for mark in pair.glyph(ends, tuple(Pose.of(np.array([z]), np.array([u])) for z, u in lying)):
+        if isinstance(mark, Wheel):
+            at, radius = (complex(np.ravel(one)[0]) for one in (mark.at, mark.radius))
+            told = {"at": [at.real, at.imag], "radius": radius.real, "is_ring": mark.is_ring}
+            yield {"link": pair.members[mark.member], "teeth": int(np.ravel(mark.teeth)[0]), **told}
+        elif isinstance(mark, Outline | Groove):
+            line = np.atleast_2d(mark.line)[0]
+            line = line[:: max(1, len(line) // PROFILE)]
+            told = {"line": [line.real.tolist(), line.imag.tolist()]}
+            yield {"link": pair.members[mark.member], "is_closed": isinstance(mark, Outline) and mark.closed, **told}
 
 
 def _mobility(reading: Reading) -> dict[str, Any]:
@@ -504,11 +539,15 @@ def _fixes(structure: Structure, fault: Fault) -> Iterator[dict[str, Any]]:
             yield _fix(f"remove the driver {drive.name}", do="delete", drive=drive.name)
         return
     driven = {(one.link, one.on) for one in mechanism.drives}
-    blocks = {name for name, link in mechanism.links.items() if len(link.points) == 1 and name != FRAME}
+    sliding = {name for one in mechanism.written_pairs if one.code == "P" for name in one.members}
+    blocks = {name for name in sliding - {FRAME} if len(mechanism.links[name].points) == 1}
     pairs = [one for one in structure.pairs if one.table or not blocks & set(one.members)]
     choices = [one for one in pairs if _may_be_driven(one, fault, driven)]
     for pair in sorted(choices, key=lambda one: FRAME not in one.members)[:FIXES]:
         on, link = sorted(pair.members, key=lambda name: name != FRAME)
+        if isinstance(pair, Stroke):
+            yield _fix(f"drive {pair.name}", do="driver", cylinder=pair.name)
+            continue
         yield _fix(f"drive {link} at {pair.letters[0]}", do="driver", point=pair.letters[0], link=link, on=on)
 
 
@@ -534,7 +573,7 @@ def _motion(document: str, question: Mapping[str, Any]) -> Reply:
         found = np.round(np.broadcast_to(np.atleast_2d(values), (motion.failed.shape))[0], digits).tolist()
         return [None if not isfinite(one) else one for one in found]
 
-    turned = {pair.members[0] for pair in motion.mechanism.written_pairs} - {FRAME}
+    turned = {name for pair in motion.mechanism.written_pairs for name in pair.members} - {FRAME}
     names = list(motion.drives)
     places = {letter: np.atleast_2d(point.position) for letter, point in motion.points.items()}
     return {
@@ -598,4 +637,22 @@ def _edit(document: str, question: Mapping[str, Any]) -> Reply:
     return {"text": toml_text.changed(document, wanted, syntax_of(document)), "made": made, "problems": []}
 
 
-QUESTIONS = {"structure": _structure, "motion": _motion, "edit": _edit}
+def _offers(document: str, question: Mapping[str, Any]) -> Reply:
+    """Reply of each of several edits why it cannot be done; "" where it can."""
+    edits = question.get("edits")
+    if not isinstance(edits, list) or len(edits) > MOST_OFFERS:
+        raise InvalidInput(Problem("edits", "these are no edits", f"give a list of at most {MOST_OFFERS}"))
+    reading = reading_of(document)
+    drawing = drawing_of(reading)
+
+    def reason(edit: Any) -> str:
+        try:
+            edited(deepcopy(reading.document), edit if isinstance(edit, dict) else {}, drawing)
+        except CompoundkinError as error:
+            return "; ".join(f"{one.what}{f' ({one.remedy})' if one.remedy else ''}" for one in error.problems)
+        return ""
+
+    return {"why": [reason(edit) for edit in edits], "problems": []}
+
+
+QUESTIONS = {"structure": _structure, "motion": _motion, "edit": _edit, "offers": _offers}

@@ -9,43 +9,40 @@ others. What cannot be done is refused with its reason: `InvalidInput`, the docu
 from __future__ import annotations
 
 import cmath
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from itertools import count
 from math import degrees, floor, isfinite, log10
-from string import ascii_uppercase
 from types import MappingProxyType
-from typing import Any, TypeAlias
+from typing import Any
 
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.model.geometry import FRAME
+from compoundkin.studio.edited_document import (
+    DIGITS,
+    LINK_KEYS,
+    POINT_KEYS,
+    Document,
+    Edit,
+    EditedDocument,
+    Placement,
+    called,
+    direction_of,
+    listed,
+    place_in,
+    refused,
+    renamed_in_tables,
+    word_in,
+)
+from compoundkin.studio.moves import lengthen, move
 
-Document: TypeAlias = dict[str, Any]
-Edit: TypeAlias = Mapping[str, Any]
-
-# Keys of tables that name links, and those that name points.
-LINK_KEYS = ("link", "on", "to", "first", "second", "carrier", "rack", "pinion", "fixed_in")
-POINT_KEYS = ("at", "through", "toward", "point", "first_at", "second_at", "centre_at")
-# A number is written with so many digits, counted from the size of the drawing.
-DIGITS = 7
 # A driven slide goes so far to both sides of where it is drawn, in parts of the drawing's size, in so many steps.
 TRAVEL, STEPS = 0.25, 60
 # What is called so where nothing else has the name.
-BAR, BLOCK = "bar", "block"
-
-
-@dataclass(frozen=True)
-class Placement:
-    """Where points and links are in the pose that is shown: origins and directions (unit vectors) of links."""
-
-    places: Mapping[str, complex]
-    poses: Mapping[str, tuple[complex, complex]]
-
-    @property
-    def size(self) -> float:
-        """The extent of all points; 1 where there are no two."""
-        xs, ys = [p.real for p in self.places.values()], [p.imag for p in self.places.values()]
-        return max(max(xs) - min(xs), max(ys) - min(ys)) or 1.0 if xs else 1.0
+BAR, BLOCK, CYLINDER, WHEEL, CAM = "bar", "block", "cylinder", "wheel", "cam"
+# A cylinder that is driven goes from so much to so much of its drawn length.
+CYLINDER_RANGE = 0.85, 1.25
+# A follower of a cam dwells in the turn that its rise and its return leave.
+TURN = 360.0
 
 
 def edited(document: Document, edit: Edit, drawing: Placement) -> dict[str, Any]:
@@ -67,152 +64,17 @@ def edited(document: Document, edit: Edit, drawing: Placement) -> dict[str, Any]
     return made
 
 
-@dataclass(frozen=True)
-class EditedDocument:
-    """A document with its drawing, and what edits look up and write in it."""
-
-    document: Document
-    drawing: Placement
-
-    @property
-    def links(self) -> dict[str, Any]:
-        """The links by name."""
-        found = self.document.setdefault("links", {})
-        if not isinstance(found, dict):
-            raise _refused("the links are not written as tables", "mend them in the text")
-        return found
-
-    def points(self, link: str) -> Any:
-        """The points of a link: a list of letters, or a table of coordinates. Raises UnknownName."""
-        table = self.links.get(link)
-        if not isinstance(table, dict):
-            raise UnknownName(Problem(link, "there is no such link", suggestion(link, list(self.links))))
-        return table.setdefault("points", [])
-
-    def carriers(self, letter: str) -> list[str]:
-        """The links that have a point, the frame first. Raises UnknownName."""
-        found = [name for name in sorted(self.links, key=lambda name: name != FRAME) if letter in self.points(name)]
-        if not found:
-            known = [k for name in self.links for k in self.points(name)]
-            raise UnknownName(Problem(letter, "there is no such point", suggestion(letter, known)))
-        return found
-
-    def tables(self) -> Iterator[tuple[str, list[Any], Any]]:
-        """The tables of all arrays: the array's name, the array, the table."""
-        for name, array in self.document.items():
-            if isinstance(array, list):
-                yield from ((name, array, table) for table in list(array) if isinstance(table, dict))
-
-    def drop(self, is_gone: Callable[[str, Any], bool]) -> list[Any]:
-        """Take tables out of their arrays, and return them."""
-        gone = [(array, table) for name, array, table in self.tables() if is_gone(name, table)]
-        for array, table in gone:
-            array[:] = [one for one in array if one is not table]
-        return [table for _, table in gone]
-
-    @property
-    def is_as_drawn(self) -> bool:
-        """Whether new links take their dimensions off the drawing: unless a link has coordinates."""
-        return not any(isinstance(self.points(name), dict) for name in self.links if self.points(name))
-
-    def number(self, value: float) -> float | int:
-        """Return a number as it is written: rounded to what can be seen."""
-        digits = DIGITS - 1 - floor(log10(self.drawing.size))
-        found = round(value, digits) + 0.0
-        return int(found) if found.is_integer() and abs(found) < 1e15 else found
-
-    def pair(self, place: complex) -> list[float | int]:
-        """Return a place as it is written."""
-        return [self.number(place.real), self.number(place.imag)]
-
-    def place(self, letter: str) -> complex:
-        """Return where a point is."""
-        if letter not in self.drawing.places:
-            raise _refused(f"it is not known where {letter} is", f"give {letter} a place in [drawn]")
-        return self.drawing.places[letter]
-
-    def draw(self, letter: str, place: complex | None = None) -> None:
-        """Write a point into the drawing; where it is shown, unless it has another place or is drawn already."""
-        drawn = self.document.setdefault("drawn", {})
-        if place is not None or letter not in drawn:
-            drawn[letter] = self.pair(self.place(letter) if place is None else place)
-
-    def local(self, link: str, place: complex) -> complex:
-        """Return a place in the frame of a link."""
-        if link not in self.drawing.poses:
-            raise _refused(f"it is not known how {link} lies", "its coordinates can be changed in the text")
-        origin, along = self.drawing.poses[link]
-        return (place - origin) / along
-
-    def put(self, link: str, letter: str, place: complex) -> None:
-        """Give a link a point, or its point another place."""
-        points = self.points(link)
-        if isinstance(points, list):
-            points += [] if letter in points else [letter]
-            self.draw(letter, place)
-            return
-        at, old = self.local(link, place), points.get(letter)
-        if isinstance(old, dict) and "polar" in old:
-            points[letter] = {"polar": [self.number(abs(at)), round(degrees(cmath.phase(at)), DIGITS)]}
-        else:
-            points[letter] = self.pair(at)
-        if "drawn" in self.document:
-            self.draw(letter, place)
-
-    def take(self, link: str, letter: str) -> None:
-        """Take a point off a link; a link that has none left goes with it."""
-        points = self.points(link)
-        if isinstance(points, list):
-            points.remove(letter)
-        else:
-            del points[letter]
-        if not points:
-            del self.links[link]
-
-    def new_letter(self) -> str:
-        """Return a letter that no point has, and no link."""
-        used = {*self.links, *(k for name in self.links for k in self.points(name)), *self.document.get("drawn", {})}
-        letters = (f"{one}{number or ''}" for number in count() for one in ascii_uppercase)
-        return next(one for one in letters if one not in used)
-
-    def new_name(self, word: str) -> str:
-        """Return a name that no link has."""
-        return next(name for name in (f"{word}{k}" for k in count(1)) if name not in self.links)
-
-
-def _refused(what: str, remedy: str = "") -> InvalidInput:
-    return InvalidInput(Problem("", what, remedy))
-
-
-def _place(value: Any) -> complex:
-    """Return a place out of a question. Raises InvalidInput."""
-    try:
-        x, y = map(float, value)
-    except (TypeError, ValueError):
-        raise InvalidInput(Problem("at", f"{value!r} is no place", "give [x, y]")) from None
-    if not (isfinite(x) and isfinite(y)):
-        raise InvalidInput(Problem("at", "a place must be finite", "give [x, y]"))
-    return complex(x, y)
-
-
-def _word(edit: Edit, key: str) -> str:
-    value = edit.get(key)
-    if not isinstance(value, str):
-        raise InvalidInput(Problem(key, f"{value!r} is no name", "name a point, a link, a driver or a pair"))
-    return value
-
-
 def _end(sheet: EditedDocument, end: Any) -> tuple[str, complex]:
     """Return the letter of an end of a bar and its place: a point that is there, one on a link, or a new one."""
     if not isinstance(end, dict):
         raise InvalidInput(Problem("from, to", f"{end!r} is no end of a bar", "give a point, a link and at, or at"))
     if "point" in end:
-        letter = _word(end, "point")
+        letter = word_in(end, "point")
         sheet.carriers(letter)
         return letter, sheet.place(letter)
-    place, letter = _place(end.get("at")), sheet.new_letter()
+    place, letter = place_in(end.get("at")), sheet.new_letter()
     if "link" in end:
-        sheet.put(_word(end, "link"), letter, place)
+        sheet.put(word_in(end, "link"), letter, place)
     return letter, place
 
 
@@ -224,10 +86,10 @@ def _bar(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     sheet.links[name] = {"points": [first]}
     second, stop = _end(sheet, edit.get("to"))
     if abs(stop - start) <= 1e-9 * sheet.drawing.size:
-        raise _refused("a bar needs two points apart", "draw it longer")
+        raise refused("a bar needs two points apart", "draw it longer")
     for other in sheet.links:
         if other != name and first in sheet.points(other) and second in sheet.points(other):
-            raise _refused(f"{other} has {first} and {second} already", "end the bar elsewhere")
+            raise refused(f"{other} has {first} and {second} already", "end the bar elsewhere")
     if sheet.is_as_drawn:
         sheet.links[name] = {"points": [first, second]}
     else:
@@ -238,50 +100,242 @@ def _bar(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
 
 
 def _point(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
-    """Add a point to a link."""
-    letter = sheet.new_letter()
-    sheet.put(_word(edit, "link"), letter, _place(edit.get("at")))
+    """Add a point to a link, or one pin to several."""
+    letter, links = sheet.new_letter(), edit.get("links")
+    for link in map(str, links) if isinstance(links, list) and links else [word_in(edit, "link")]:
+        sheet.put(link, letter, place_in(edit.get("at")))
     return {"points": [letter]}
 
 
-def _move(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
-    """Move a point: the coordinates of the links that have some, and the drawing."""
-    letter, place = _word(edit, "point"), _place(edit.get("to"))
-    for link in sheet.carriers(letter):
-        # a block of one point lies where its point is
-        if len(sheet.points(link)) > 1 or link == FRAME or isinstance(sheet.points(link), list):
-            sheet.put(link, letter, place)
-    return {"points": [letter]}
+def _weld(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
+    """Make one link of two that are joined at a point."""
+    letter = word_in(edit, "point")
+    carriers = [name for name in sheet.carriers(letter) if not sheet.is_block(name)]
+    pair = [word_in(edit, "link"), word_in(edit, "with")] if "link" in edit else carriers[:2]
+    if len(pair) < 2 or pair[0] == pair[1] or not {*pair} <= {*carriers}:
+        raise refused(f"no two links are joined at {letter}", "drop an end on another link first")
+    kept, gone = sorted(pair, key=lambda name: name != FRAME)
+    for other in sheet.points(gone):
+        if other not in sheet.points(kept):
+            sheet.put(kept, other, sheet.place(other))
+    del sheet.links[gone]
+    # what led from one to the other is no more; the rest is of the link that they are now
+    pairs = sheet.drop(lambda array, t: array != "expected" and _is_between(t, kept, gone))
+    _after(sheet, pairs, gone)
+    renamed_in_tables(sheet, gone, kept, LINK_KEYS)
+    _tidy(sheet)
+    return {"link": kept, "points": [letter]}
+
+
+def _is_between(table: Any, one: str, other: str) -> bool:
+    named = {table.get("link"), table.get("on", FRAME if "link" in table else None)}
+    return named == {one, other} or {table.get("first"), table.get("second")} == {one, other}
+
+
+def _cylinder(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
+    """Add a cylinder between two ends; one that is on nothing is fixed to the frame."""
+    ends = []
+    for key in ("from", "to"):
+        given = edit.get(key)
+        letter, place = _end(sheet, given)
+        if isinstance(given, dict) and "point" not in given and "link" not in given:
+            sheet.grounded(letter, place)
+        ends.append((letter, place, str(given.get("link", "")) if isinstance(given, dict) else ""))
+    (at, start, to), (point, stop, link) = ends
+    to, link = to or sheet.carrier(at), link or sheet.carrier(point)
+    if to == link:
+        to, link = sheet.carrier(at), sheet.carrier(point, to)
+    if at == point or abs(stop - start) <= 1e-9 * sheet.drawing.size:
+        raise refused("a cylinder needs two points apart", "draw it longer")
+    if not link or to == link:
+        raise refused(f"both ends are on {to}: it would push nothing", "end it on another link")
+    if link == FRAME:
+        to, at, link, point = link, point, to, at
+    names = {one.get("name") for one in listed(sheet.document.get("cylinders")) if isinstance(one, dict)}
+    name = next(n for n in (f"{CYLINDER}{k}" for k in count(1)) if n not in names and n not in sheet.links)
+    table = {"name": name, "link": link, "point": point} | ({} if to == FRAME else {"to": to}) | {"at": at}
+    sheet.document.setdefault("cylinders", []).append(table)
+    for letter in (at, point):
+        if sheet.is_as_drawn or "drawn" in sheet.document:
+            sheet.draw(letter, start if letter == ends[0][0] else stop)
+    return {"pair": name}
+
+
+def _turn(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
+    """Give a slide on the frame another direction."""
+    name, angle = word_in(edit, "pair"), edit.get("angle")
+    if isinstance(angle, bool) or not isinstance(angle, int | float) or not isfinite(angle):
+        raise InvalidInput(Problem("angle", f"{angle!r} is no angle", "give degrees"))
+    for array, _, table in sheet.tables():
+        if array == "slides" and table.get("name", f"{table.get('link')}/{table.get('on')}") == name:
+            if table.get("on") != FRAME:
+                raise refused(f"{name} has the direction of {table.get('on')}", "turn that link")
+            table.pop("toward", None)
+            table["angle"] = round(angle, DIGITS) + 0.0 if angle % 1 else int(angle)
+            return {"pair": name}
+    raise UnknownName(Problem(name, "there is no such slide"))
+
+
+def _wheel_at(sheet: EditedDocument, letter: str, word: str, link: Any, carrier: str) -> str:
+    """Return the link that turns at a point: the one that is named, one that is a wheel there, or a new wheel."""
+    if isinstance(link, str) and link:
+        if link not in sheet.carriers(letter):
+            raise refused(f"{link} has no point {letter}", "name a link that turns there")
+        return link
+    for name in sheet.carriers(letter):
+        if name not in (FRAME, carrier) and len(sheet.points(name)) == 1 and not sheet.is_block(name):
+            return name
+    name = sheet.new_name(word)
+    sheet.links[name] = {"points": [letter] if sheet.is_as_drawn else {letter: [0, 0]}}
+    return name
+
+
+def _gear(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
+    """Put two gears at two points of one link, by their teeth: on links that turn there, or wheels of their own."""
+    one, two = word_in(edit, "point"), word_in(edit, "with")
+    if one == two:
+        raise refused("two gears have two axes", "choose two points")
+    both = [name for name in sheet.carriers(one) if name in sheet.carriers(two)]
+    if not both:
+        raise refused(f"no link carries both {one} and {two}", "ground both, or choose two points of one bar")
+    teeth = edit.get("teeth")
+    if not (isinstance(teeth, list) and len(teeth) == 2 and all(isinstance(n, int) and 0 < n < 1e6 for n in teeth)):
+        raise refused(f"{teeth!r} are no numbers of teeth", "give two whole numbers")
+    first = _wheel_at(sheet, one, WHEEL, edit.get("first"), both[0])
+    second = _wheel_at(sheet, two, WHEEL, edit.get("second"), both[0])
+    table: dict[str, Any] = (
+        {"first": first, "second": second} | ({} if both[0] == FRAME else {"carrier": both[0]}) | {"teeth": teeth}
+    )
+    for array, _, other in sheet.tables():
+        if array == "gears" and {other.get("first"), other.get("second")} == {first, second}:
+            raise refused(f"{first} and {second} are in mesh already", "delete that gear pair first")
+    if edit.get("internal"):
+        if teeth[0] >= teeth[1]:
+            raise refused("a ring has more teeth than the gear in it", "choose the gear first, and more teeth second")
+        table["internal"] = True
+    sheet.document.setdefault("gears", []).append(table)
+    return {"link": first}
+
+
+def _cam(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
+    """Put a cam at a fixed point that leads another point: a disc, or the profile for a rise and a return."""
+    axis, letter = word_in(edit, "point"), word_in(edit, "with")
+    if FRAME not in sheet.carriers(axis):
+        raise refused(f"{axis} is not fixed", "ground it first (key G)")
+    centre, place = sheet.place(axis), sheet.place(letter)
+    numbers = {k: _positive(edit, k) for k in ("radius", "roller")}
+    gap = abs(place - centre)
+    if gap <= 1e-9 * sheet.drawing.size:
+        raise refused(f"{letter} is at {axis}", "choose a point away from it")
+    follower = next((n for n in sheet.carriers(letter) if n != FRAME and sheet.is_block(n)), "")
+    follower = follower or next((n for n in sheet.carriers(letter) if n != FRAME), "")
+    if not follower:
+        raise refused(f"{letter} is on the frame", "choose a point that slides or swings")
+    cam = _wheel_at(sheet, axis, CAM, None, FRAME)
+    table: dict[str, Any] = {"link": follower, "on": cam, "at": letter}
+    if numbers["roller"]:
+        table["radius"] = sheet.number(numbers["roller"])
+    if edit.get("kind") == "disc":
+        eccentric = _positive(edit, "rise") / 2
+        table["profile"] = {"kind": "disc", "radius": sheet.number(numbers["radius"]),
+                            "middle": [sheet.number(eccentric), 0]}  # fmt: skip
+    else:
+        table["profile"] = _made_profile(sheet, edit, (axis, letter, follower), numbers)
+    sheet.document.setdefault("cams", []).append(table)
+    return {"link": cam}
+
+
+def _made_profile(
+    sheet: EditedDocument, edit: Edit, at: tuple[str, str, str], numbers: Mapping[str, float]
+) -> dict[str, Any]:
+    """Return the profile for a motion: a rise, a dwell, the return, a dwell; of a slide, or of a bar that swings."""
+    axis, letter, follower = at
+    rise, over, dwell, back = (_positive(edit, key) for key in ("rise", "over", "dwell", "back"))
+    rest = TURN - over - dwell - back
+    if min(rise, over, back) <= 0 or rest < 0:
+        raise refused("rise, dwell and return are no part of a turn", f"together at most {TURN:g} degrees")
+    law = "cycloidal"
+    parts = [(over, rise), (dwell, 0.0), (back, -rise), (rest, 0.0)]
+    number = sheet.number
+    program = [
+        {"law": law, "over": number(long), "rise": number(by)} if by else {"law": "dwell", "over": number(long)}
+        for long, by in parts
+        if long
+    ]
+    made = {"kind": "made", "program": program, "base": number(numbers["radius"])}
+    made |= {"follower": "roller", "roller": number(numbers["roller"])} if numbers["roller"] else {}
+    centre, place = sheet.place(axis), sheet.place(letter)
+    slide = next((t for name, _, t in sheet.tables() if name == "slides" and t.get("link") == follower), None)
+    if slide is not None:
+        if slide.get("on", FRAME) != FRAME:
+            raise refused(f"{follower} does not slide on the frame", "choose another point")
+        along = direction_of(sheet, slide)
+        through = sheet.place(slide["through"])
+        # a guide beside the axis is one beside the cam's middle
+        away = ((through - centre) * along.conjugate()).imag
+        if ((place - centre) * along.conjugate()).real < 0:
+            raise refused("it slides toward the cam", "turn the slide by 180 degrees")
+        return made | {"angle": round(degrees(cmath.phase(along)), DIGITS) + 0.0, "offset": number(away)}
+    pivot = next((k for k in sheet.points(follower) if k != letter and sheet.is_fixed(k)), None)
+    if pivot is None:
+        raise refused(f"{follower} neither slides on the frame nor turns about a fixed point", "ground its end")
+    arm, to = place - sheet.place(pivot), sheet.place(pivot) - centre
+    side = 1 if ((place - centre) * arm.conjugate()).imag >= 0 else -1
+    return made | {"pivot": sheet.pair(to), "arm": number(abs(arm)), "side": side}
+
+
+def _positive(edit: Edit, key: str) -> float:
+    value = edit.get(key, 0)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value) or value < 0:
+        raise InvalidInput(Problem(key, f"{value!r} is no number from 0 on", f"give {key} = 10"))
+    return float(value)
+
+
+def _all(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
+    """Do several edits as one; all or none of them."""
+    edits, made = edit.get("edits"), dict[str, Any]()
+    if not isinstance(edits, list) or not all(isinstance(one, dict) and one.get("do") != "all" for one in edits):
+        raise InvalidInput(Problem("edits", f"{edits!r} are no edits", "give a list of them"))
+    for one in edits:
+        is_gone = one.get("do") == "delete" and not _is_there(sheet, one)
+        made |= {} if is_gone else edited(sheet.document, one, sheet.drawing)
+    return made
+
+
+def _is_there(sheet: EditedDocument, edit: Edit) -> bool:
+    if "link" in edit:
+        return edit["link"] in sheet.links
+    return "point" not in edit or any(edit["point"] in sheet.points(name) for name in sheet.links)
 
 
 def _join(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     """Join a point to another one: its links are pinned there."""
-    letter, other = _word(edit, "point"), _word(edit, "with")
+    letter, other = word_in(edit, "point"), word_in(edit, "with")
     moved, there = sheet.carriers(letter), sheet.carriers(other)
     both = [link for link in moved if link in there]
     if letter == other:
-        raise _refused(f"{letter} is one point already")
+        raise refused(f"{letter} is one point already")
     if both:
-        raise _refused(f"{both[0]} has {letter} and {other}: it would be of no length", "join a point of another link")
+        raise refused(f"{both[0]} has {letter} and {other}: it would be of no length", "join a point of another link")
     place = sheet.place(other)
     for link in moved:
         if len(sheet.points(link)) > 1:
             sheet.put(link, letter, place)
         _renamed_point(sheet.links[link], letter, other)
     sheet.document.get("drawn", {}).pop(letter, None)
-    _rename(sheet, letter, other, POINT_KEYS)
+    renamed_in_tables(sheet, letter, other, POINT_KEYS)
     return {"points": [other]}
 
 
 def _tear(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     """Take a link off a pin: it gets a point of its own."""
-    letter, link = _word(edit, "point"), _word(edit, "link")
+    letter, link = word_in(edit, "point"), word_in(edit, "link")
     if link not in sheet.carriers(letter):
-        raise _refused(f"{link} has no point {letter}")
+        raise refused(f"{link} has no point {letter}")
     if len(sheet.carriers(letter)) < 2:
-        raise _refused(f"nothing is joined at {letter}")
+        raise refused(f"nothing is joined at {letter}")
     own = sheet.new_letter()
-    place = _place(edit["to"]) if "to" in edit else sheet.place(letter)
+    place = place_in(edit["to"]) if "to" in edit else sheet.place(letter)
     # only then: what follows asks for the place of its new name
     if len(sheet.points(link)) > 1 or isinstance(sheet.points(link), list):
         _renamed_point(sheet.links[link], letter, own)
@@ -305,37 +359,35 @@ def _renamed_point(link: Any, old: str, new: str) -> None:
 
 def _ground(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     """Fix a point to the frame, or let it go where it is fixed."""
-    letter = _word(edit, "point")
+    letter = word_in(edit, "point")
     carriers = sheet.carriers(letter)
     if FRAME not in carriers:
-        if FRAME not in sheet.links:
-            rest = dict(sheet.links)
-            sheet.links.clear()
-            sheet.links.update({FRAME: {"points": [] if sheet.is_as_drawn else {}}, **rest})
-        sheet.put(FRAME, letter, sheet.place(letter))
+        sheet.grounded(letter, sheet.place(letter))
         return {"points": [letter]}
     user = next((t for _, _, t in sheet.tables() if t.get("on") == FRAME and letter in map(t.get, POINT_KEYS)), None)
     if user is not None:
-        raise _refused(f"a slide of {user.get('link')} leads through {letter}", "delete the slide first")
+        raise refused(f"a slide of {user.get('link')} leads through {letter}", "delete the slide first")
     if len(carriers) == 1:
-        raise _refused(f"{letter} is on the frame alone", "delete the point")
+        raise refused(f"{letter} is on the frame alone", "delete the point")
     sheet.take(FRAME, letter)
     return {"points": [letter]}
 
 
 def _driver(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     """Add a driver of a pin, or of a slide."""
-    letter = _word(edit, "point")
+    if "cylinder" in edit:
+        return _driven_cylinder(sheet, word_in(edit, "cylinder"))
+    letter = word_in(edit, "point")
     slide = next((t for name, _, t in sheet.tables() if name == "slides" and t.get("at", letter) == letter
                   and letter in sheet.points(str(t.get("link")))), None)  # fmt: skip
-    carriers = [name for name in sheet.carriers(letter) if name == FRAME or len(sheet.points(name)) > 1]
+    carriers = [name for name in sheet.carriers(letter) if name == FRAME or not sheet.is_block(name)]
     table: dict[str, Any]
     if slide is not None and edit.get("on", slide.get("on", FRAME)) == slide.get("on", FRAME) and FRAME not in carriers:
         table = {"link": slide["link"], "values": _travel(sheet, slide, letter)}
         on = slide.get("on", FRAME)
     else:
         if len(carriers) < 2:
-            raise _refused(f"no two links are joined at {letter}", "ground it, or join a bar there")
+            raise refused(f"no two links are joined at {letter}", "ground it, or join a bar there")
         link = edit.get("link", next(name for name in carriers if name not in (FRAME, edit.get("on"))))
         on = edit.get("on", next(name for name in carriers if name != link))
         table = {"link": link}
@@ -347,29 +399,46 @@ def _driver(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     drives = sheet.document.setdefault("drives", [])
     for one in drives:
         if one.get("link") == table["link"] and one.get("on", FRAME) == on:
-            raise _refused(f"{table['link']} is driven already", "delete its driver first")
+            raise refused(f"{table['link']} is driven already", "delete its driver first")
     if any(one.get("name", one.get("link")) == table["link"] for one in drives):
         table = {"name": f"{table['link']} on {on}", **table}
     drives.append(table)
     return {"drive": table.get("name", table["link"])}
 
 
+def _driven_cylinder(sheet: EditedDocument, name: str) -> dict[str, Any]:
+    """Add the driver of a cylinder: its length, around the drawn one."""
+    table = next((t for array, _, t in sheet.tables() if array == "cylinders" and called(t, array) == name), None)
+    if table is None:
+        raise UnknownName(Problem(name, "there is no such cylinder"))
+    drives: list[Any] = sheet.document.setdefault("drives", [])
+    if any(one.get("link") == name for one in drives if isinstance(one, dict)):
+        raise refused(f"{name} is driven already", "delete its driver first")
+    long = abs(sheet.place(table["point"]) - sheet.place(table["at"]))
+    least, most = (long * part for part in CYLINDER_RANGE)
+    stroke = table.get("stroke")
+    if isinstance(stroke, list) and len(stroke) == 2 and all(isinstance(one, int | float) for one in stroke):
+        least, most = max(least, stroke[0]), min(most, stroke[1])
+    values = _steps(sheet, least, most)
+    drives.append({"link": name, "values": values})
+    return {"drive": name}
+
+
 def _travel(sheet: EditedDocument, slide: Mapping[str, Any], letter: str) -> dict[str, Any]:
     """Return values for the driver of a slide: to both sides of where it is drawn."""
-    through = sheet.place(str(slide.get("through")))
-    if isinstance(slide.get("toward"), str):
-        along = sheet.place(slide["toward"]) - through
-    else:
-        turned = slide.get("angle", 0)
-        angle = turned if isinstance(turned, int | float) else 0.0
-        along = (
-            cmath.rect(1.0, angle * cmath.pi / 180) * sheet.drawing.poses.get(slide.get("on", FRAME), (0j, 1 + 0j))[1]
-        )
-    drawn = ((sheet.place(letter) - through) / (along / (abs(along) or 1.0))).real
+    through, along = sheet.place(str(slide.get("through"))), direction_of(sheet, slide)
+    drawn = ((sheet.place(letter) - through) * along.conjugate()).real
     reach = TRAVEL * sheet.drawing.size
-    step = _nice(reach / STEPS * 2)
-    low, high = (step * round((drawn + side * reach) / step) for side in (-1, 1))
-    return {"from": sheet.number(low), "to": sheet.number(high), "step": sheet.number(step)}
+    return _steps(sheet, drawn - reach, drawn + reach)
+
+
+def _steps(sheet: EditedDocument, low: float, high: float) -> dict[str, Any]:
+    """Return about a range in round steps; all drivers have as many, as they go together."""
+    step = _nice((high - low) / STEPS)
+    while STEPS * step > 1.2 * (high - low):
+        step /= 2
+    start = step * round(((low + high) / 2 - STEPS / 2 * step) / step)
+    return {"from": sheet.number(start), "to": sheet.number(start + STEPS * step), "step": sheet.number(step)}
 
 
 def _nice(value: float) -> float:
@@ -384,19 +453,19 @@ def _nice(value: float) -> float:
 
 def _slide(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     """Let a point slide: a block at it, on the frame in a direction, or along a link."""
-    letter, on = _word(edit, "point"), str(edit.get("on", FRAME))
+    letter, on = word_in(edit, "point"), str(edit.get("on", FRAME))
     place = sheet.place(letter)
     carriers = sheet.carriers(letter)
-    if any(len(sheet.points(name)) == 1 for name in carriers if name != FRAME):
-        raise _refused(f"there is a block at {letter} already", "delete it first")
+    if any(sheet.is_block(name) for name in carriers if name != FRAME):
+        raise refused(f"there is a block at {letter} already", "delete it first")
     if carriers == [FRAME]:
-        raise _refused(f"{letter} is on the frame alone", "draw a bar from it")
+        raise refused(f"{letter} is on the frame alone", "draw a bar from it")
     if on == FRAME and FRAME in carriers:
         # a pin on the frame becomes a slide on it
         sheet.take(FRAME, letter)
         carriers.remove(FRAME)
     elif on in carriers:
-        raise _refused(f"{on} has the point {letter}: it cannot slide there", "name another link")
+        raise refused(f"{on} has the point {letter}: it cannot slide there", "name another link")
     table: dict[str, Any] = {"link": sheet.new_name(BLOCK), "on": on, "at": letter}
     is_as_drawn = sheet.is_as_drawn
     if on == FRAME:
@@ -411,7 +480,7 @@ def _slide(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     else:
         letters = list(sheet.points(on))
         if len(letters) < 2:
-            raise _refused(f"{on} has one point and no direction", "name another link")
+            raise refused(f"{on} has one point and no direction", "name another link")
         table |= {"through": letters[0], "toward": letters[1]}
         start, line = sheet.place(letters[0]), sheet.place(letters[1]) - sheet.place(letters[0])
         away = ((place - start) * line.conjugate()).imag / abs(line)
@@ -428,10 +497,10 @@ def _delete(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     """Delete a point, a link, a driver or a pair, with what is written of it; nothing else goes."""
     for key, remove in (("link", _without_link), ("drive", _without_drive), ("pair", _without_pair)):
         if key in edit:
-            remove(sheet, _word(edit, key))
+            remove(sheet, word_in(edit, key))
             break
     else:
-        letter = _word(edit, "point")
+        letter = word_in(edit, "point")
         for link in sheet.carriers(letter):
             points = sheet.points(link)
             if link == FRAME or len(points) > 2:
@@ -445,7 +514,7 @@ def _delete(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
 def _without_link(sheet: EditedDocument, name: str) -> None:
     sheet.points(name)
     del sheet.links[name]
-    gone = sheet.drop(lambda _, t: name in map(t.get, LINK_KEYS) or name in _listed(t.get("links")))
+    gone = sheet.drop(lambda _, t: name in map(t.get, LINK_KEYS) or name in listed(t.get("links")))
     _after(sheet, gone, name)
 
 
@@ -457,7 +526,9 @@ def _without_drive(sheet: EditedDocument, name: str) -> None:
 
 def _without_pair(sheet: EditedDocument, name: str) -> None:
     def is_it(array: str, table: Any) -> bool:
-        return array != "drives" and "on" in table and table.get("name", f"{table.get('link')}/{table['on']}") == name
+        kinds = {"on", "second", "pinion"}
+        is_pair = array == "cylinders" or (array not in ("drives", "expected") and not kinds.isdisjoint(table))
+        return is_pair and called(table, array) == name
 
     gone = sheet.drop(is_it)
     if not gone:
@@ -469,9 +540,12 @@ def _after(sheet: EditedDocument, gone: list[Any], name: str) -> None:
     """Take out what belongs to what is gone: blocks of one point that slid, drivers and loads of pairs, outputs."""
     for table in gone:
         block = table.get("link")
-        called = table.get("name", f"{block}/{table.get('on')}")
-        sheet.drop(lambda _, t, called=called: t.get("pair") == called)  # type: ignore[misc]
-        if "on" in table and block != name and block in sheet.links and len(sheet.points(block)) == 1:
+        own = called(table, "cylinders" if "point" in table and "at" in table else "")
+        sheet.drop(lambda _, t, own=own: t.get("pair") == own)  # type: ignore[misc]
+        # a cylinder is driven by its name
+        sheet.drop(lambda array, t, own=own: array == "drives" and t.get("link") == own)  # type: ignore[misc]
+        is_sliding = "on" in table and "through" in table
+        if is_sliding and block != name and block in sheet.links and len(sheet.points(block)) == 1:
             _without_link(sheet, block)
         guide = table.get("through")
         is_used = any(guide in map(other.get, POINT_KEYS) for _, _, other in sheet.tables())
@@ -509,40 +583,18 @@ def _tidy(sheet: EditedDocument) -> None:
         sheet.document["outputs"] = [one for one in sheet.document["outputs"] if is_named(one)]
 
 
-def _listed(value: Any) -> list[Any]:
-    return value if isinstance(value, list) else []
-
-
-def _rename(sheet: EditedDocument, old: str, new: str, keys: tuple[str, ...]) -> None:
-    """Write another name wherever tables name a thing."""
-    for _, _, table in sheet.tables():
-        table |= {key: new for key in (*keys, "pair") if table.get(key) == old}
-        if isinstance(table.get("quantity"), str) and table["quantity"].split(".")[0] == old:
-            table["quantity"] = new + table["quantity"][len(old) :]
-        if isinstance(table.get("links"), list):
-            table["links"] = [new if one == old else one for one in table["links"]]
-        if isinstance(table.get("at"), dict):
-            table["at"] = {new + k[len(old) :] if k.split(".")[0] == old else k: v for k, v in table["at"].items()}
-    outputs = sheet.document.get("outputs")
-    if isinstance(outputs, list):
-        named = [
-            one if not isinstance(one, str) or one.split(".")[0] != old else new + one[len(old) :] for one in outputs
-        ]
-        sheet.document["outputs"] = named
-
-
 def _call(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     """Call a link by another name."""
-    old, new = _word(edit, "link"), _word(edit, "name").strip()
+    old, new = word_in(edit, "link"), word_in(edit, "name").strip()
     sheet.points(old)
     if FRAME in (old, new):
-        raise _refused("the frame is called so, and nothing else is", "choose another name")
+        raise refused("the frame is called so, and nothing else is", "choose another name")
     if new in sheet.links or new in {k for name in sheet.links for k in sheet.points(name)}:
-        raise _refused(f"something is called {new} already", "choose another name")
+        raise refused(f"something is called {new} already", "choose another name")
     renamed = {new if name == old else name: table for name, table in sheet.links.items()}
     sheet.links.clear()
     sheet.links.update(renamed)
-    _rename(sheet, old, new, LINK_KEYS)
+    renamed_in_tables(sheet, old, new, LINK_KEYS)
     return {"link": new}
 
 
@@ -551,13 +603,20 @@ EDITS: Mapping[str, Callable[[EditedDocument, Edit], dict[str, Any]]] = MappingP
     {
         "bar": _bar,
         "point": _point,
-        "move": _move,
+        "move": move,
+        "lengthen": lengthen,
         "join": _join,
         "tear": _tear,
+        "weld": _weld,
         "ground": _ground,
         "driver": _driver,
         "slide": _slide,
+        "turn": _turn,
+        "cylinder": _cylinder,
+        "gear": _gear,
+        "cam": _cam,
         "delete": _delete,
         "call": _call,
+        "all": _all,
     }
 )

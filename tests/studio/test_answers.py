@@ -234,7 +234,7 @@ def test_reasons_of_refusals_and_unknown_names() -> None:
     assert "driven already" in refused(text, do="driver", point="A")
     assert "no such point" in refused(text, do="move", point="Z", to=[1, 2])
     assert "no place" in refused(text, do="move", point="A", to=["x", 2])
-    assert "no edit" in refused(text, do="weld", point="A")
+    assert "no edit" in refused(text, do="dance", point="A")
     assert answer(text, {"ask": "what"})["problems"]
     assert answer("x" * 300_000, {"ask": "structure"})["problems"]
 
@@ -283,10 +283,15 @@ def some_edit(dice: random.Random, reply: dict[str, Any]) -> dict[str, Any]:
 
     names = [*(one["name"] for one in reply["pairs"]), *(one["name"] for one in reply["drives"]), "none"]
     return {
-        "do": dice.choice([*EDITS, "bar", "bar", "ground", "join"]), "from": end(), "to": dice.choice([end(), [3, 4]]),
+        "do": dice.choice([*EDITS, *["bar"] * 12, "ground", "join", "cylinder"]),
+        "from": end(), "to": dice.choice([end(), [3, 4]]),
         "point": dice.choice(points), "with": dice.choice(points), "link": dice.choice(links), "at": [5, 6],
         **dice.choice([{}, {"on": dice.choice(links)}, {"pair": dice.choice(names)}, {"drive": dice.choice(names)}]),
-        "name": f"other{dice.randrange(9)}",
+        "name": f"other{dice.randrange(9)}", "angle": dice.choice([30, "x"]), "length": dice.choice([9, -1, None]),
+        "teeth": dice.choice([[20, 40], [3]]), "radius": 40, "roller": 5, "rise": 9, "over": 90, "dwell": 0, "back": 90,
+        "points": {dice.choice(points): [7, 8]},
+        "locks": [{"what": dice.choice(["length", "point"]), "points": points[:2]}],
+        "edits": [{"do": "ground", "point": dice.choice(points)}],
     }  # fmt: skip
 
 
@@ -294,15 +299,17 @@ def some_edit(dice: random.Random, reply: dict[str, Any]) -> dict[str, Any]:
 def test_random_edits_never_raise_and_keep_every_comment_and_unknown_key(name: str) -> None:
     text = (shipped_text(name) if name else START).replace("format = 1", "format = 1  # kept\nunknown = 7", 1)
     dice, made = random.Random(f"edits {name}"), 0
-    for _ in range(25 if name else 60):
+    # the more a cam carries, the longer it is solved
+    for _ in range(10 if "cam" in name else 15 if name else 40):
         reply = structure(text)
         edit = some_edit(dice, reply)
-        after = answer(text, {"ask": "edit", "edit": edit, "pose": dice.choice([None, 3])})
+        pose = dice.choice([None, None if "cam" in name else 3])  # a random cam is solved for seconds
+        after = answer(text, {"ask": "edit", "edit": edit, "pose": pose})
         made += after["text"] != text
         text = after["text"]
         assert tomllib.loads(text)["unknown"] == 7
         assert "# kept" in text
-    assert made > 5
+    assert made > 3
     answer(text, {"ask": "motion"})
 
 
@@ -327,3 +334,181 @@ def test_structure_of_a_six_bar_is_replied_within_its_time() -> None:
 def test_a_document_in_json_stays_one() -> None:
     text = edited('{"format": 1, "title": "m"}', *FOUR_BAR)
     assert loads(text, "json").pins["B"] == ("bar1", "bar2")
+
+
+CRANE = (
+    {"do": "bar", "from": {"at": [0, 0]}, "to": {"at": [100, 60]}},
+    {"do": "ground", "point": "A"},
+    {"do": "point", "link": "bar1", "at": [50, 30]},
+    {"do": "cylinder", "from": {"at": [60, -40]}, "to": {"point": "C"}},
+    {"do": "driver", "cylinder": "cylinder1"},
+)
+
+
+def test_a_crane_with_a_cylinder_is_the_one_written_by_hand() -> None:
+    text = edited(START, *CRANE)
+    by_hand = ck.Mechanism(
+        "By hand",
+        ck.link("frame", A=0, D=60 - 40j),
+        ck.link("jib", A=0, C=abs(50 + 30j), B=abs(100 + 60j)),
+        ck.cylinder("jib", "C", at="D", name="ram"),
+        ck.drive("ram"),
+        ck.drawn(C=50 + 30j),
+    )
+    motion = ck.solve(loads(text))
+    values = motion.drives["cylinder1"].value
+    whole = ck.solve(by_hand, {"ram": values})
+    np.testing.assert_allclose(motion.points["B"].position, whole.points["B"].position, atol=1e-9)
+    assert min(values) < abs(10 - 70j) < max(values)
+    gone = edited(text, {"do": "delete", "pair": "cylinder1"})
+    assert "drives" not in tomllib.loads(gone)
+    assert "cylinders" not in tomllib.loads(gone)
+
+
+def test_two_drivers_go_together_through_their_ranges() -> None:
+    """A pin that turns fully, and a cylinder that has lengths: each as finely as it is shown."""
+    arm = {"do": "bar", "from": {"point": "B"}, "to": {"at": [150, 20]}}
+    text = edited(START, *CRANE[:4], arm, {"do": "driver", "cylinder": "cylinder1"}, {"do": "driver", "point": "B"})
+    assert structure(text)["faults"] == []
+    reply = answer(text, {"ask": "motion"})
+    assert (reply["poses"], sum(reply["assembled"])) == (361, 361)
+
+
+def test_gears_on_fixed_points_turn_as_their_teeth() -> None:
+    text = edited(
+        START,
+        {"do": "bar", "from": {"at": [0, 0]}, "to": {"at": [0, 10]}},
+        {"do": "bar", "from": {"at": [30, 0]}, "to": {"at": [40, 0]}},
+        *({"do": "ground", "point": letter} for letter in "AC"),
+        {"do": "gear", "point": "A", "with": "C", "teeth": [20, 40], "first": "bar1", "second": "bar2"},
+        {"do": "driver", "point": "A"},
+    )
+    motion = ck.solve(loads(text), ck.deg(range(0, 361, 30)))
+    np.testing.assert_allclose(np.diff(motion.links["bar2"].angle), -np.deg2rad(15), atol=1e-9)
+    (pair,) = structure(text)["pairs"]
+    assert [shape["radius"] for shape in pair["shapes"]] == pytest.approx([10, 20])
+    assert "in mesh already" in refused(
+        text, do="gear", point="A", **{"with": "C"}, teeth=[1, 2], first="bar1", second="bar2"
+    )
+    assert "no numbers of teeth" in refused(text, do="gear", point="A", **{"with": "C"}, teeth=[1.5, 2])
+
+
+LIFT = {"radius": 40, "roller": 10, "rise": 30, "over": 120, "dwell": 60, "back": 120}
+
+
+def test_a_cam_lifts_a_slide_and_swings_a_bar_by_its_program() -> None:
+    slid = edited(
+        START,
+        {"do": "bar", "from": {"at": [0, 0]}, "to": {"at": [9, 0]}},
+        {"do": "ground", "point": "A"},
+        {"do": "bar", "from": {"at": [12, 52]}, "to": {"at": [12, 80]}},
+        {"do": "slide", "point": "C", "angle": 90},
+        {"do": "delete", "link": "bar2"},
+        {"do": "cam", "point": "A", "with": "C", **LIFT},
+        {"do": "driver", "point": "A", "link": "cam1"},
+        {"do": "delete", "link": "bar1"},
+    )
+    assert structure(slid)["faults"] == []
+    heights = ck.solve(loads(slid), ck.deg([0, 60, 150, 350])).points["C"].position.imag
+    np.testing.assert_allclose(heights - heights[0], [0, 15, 30, 0], atol=1e-6)
+    swung = edited(
+        START,
+        {"do": "bar", "from": {"at": [90, 0]}, "to": {"at": [0, 50]}},
+        {"do": "ground", "point": "A"},
+        {"do": "bar", "from": {"at": [0, 0]}, "to": {"at": [9, 0]}},
+        {"do": "ground", "point": "C"},
+        {"do": "cam", "point": "C", "with": "B", **LIFT, "rise": 20},
+        {"do": "driver", "point": "C", "link": "cam1"},
+        {"do": "delete", "link": "bar2"},
+    )
+    assert structure(swung)["faults"] == []
+    angles = ck.solve(loads(swung), ck.deg([0, 150, 350])).links["bar1"].angle
+    np.testing.assert_allclose(np.abs(np.rad2deg(angles - angles[0])), [0, 20, 0], atol=1e-6)
+
+
+def lengths(text: str) -> dict[str, float]:
+    at = {k: complex(*p) for k, p in structure(text)["points"].items()}
+    return {
+        f"{name}.{a}{b}": abs(at[a] - at[b])
+        for name, table in tomllib.loads(text)["links"].items()
+        for a in table["points"]
+        for b in table["points"]
+        if a < b
+    }
+
+
+@pytest.mark.parametrize("source", ["drawn", "crank-rocker", "six-bar"])
+def test_one_link_is_lengthened_and_no_other(source: str) -> None:
+    text = edited(START, *FOUR_BAR) if source == "drawn" else shipped_text(source)
+    link, letter = ("bar1", "B") if source == "drawn" else ("crank", "D" if source == "six-bar" else "B")
+    before = lengths(text)
+    name = next(k for k in before if k.startswith(f"{link}."))
+    after = lengths(edited(text, {"do": "lengthen", "link": link, "point": letter, "length": 1.03 * before[name]}))
+    assert after[name] == pytest.approx(1.03 * before[name], rel=1e-5)
+    assert {k: v for k, v in after.items() if k != name} == pytest.approx(
+        {k: v for k, v in before.items() if k != name}, rel=1e-5
+    )
+    assert "do not reach" in refused(text, do="lengthen", link=link, point=letter, length=90 * before[name])
+
+
+def test_what_is_locked_is_held_while_points_move() -> None:
+    text = edited(START, *FOUR_BAR)
+    locks = [
+        {"what": "length", "points": ["B", "C"]},
+        {"what": "angle", "points": ["D", "C"]},
+        {"what": "point", "points": ["D"]},
+    ]
+    moved = edited(text, {"do": "move", "point": "B", "to": [12, 24], "locks": locks})
+    at = {k: complex(*p) for k, p in tomllib.loads(moved)["drawn"].items()}
+    assert abs(at["B"] - at["C"]) == pytest.approx(abs(50 + 10j), abs=1e-5)
+    assert np.angle(at["C"] - at["D"]) == pytest.approx(np.angle(10 + 30j), abs=1e-6)
+    assert (at["A"], at["D"]) == (0, 50)
+    assert at["B"] == pytest.approx(12 + 24j, abs=0.05)
+    both = [{"what": "point", "points": ["B"]}, {"what": "length", "points": ["B", "C"]}]
+    edited(text, {"do": "move", "point": "C", "to": [60, 40], "locks": both})
+    fixed = [{"what": "point", "points": ["A"]}, *locks]
+    moved = edited(text, {"do": "move", "points": {"B": [11, 21], "C": [61, 31]}, "locks": fixed})
+    assert lengths(moved)["bar2.BC"] == pytest.approx(abs(50 + 10j), abs=1e-5)
+
+
+def test_two_bars_are_welded_and_what_led_between_them_goes() -> None:
+    text = edited(
+        START,
+        *FOUR_BAR,
+        {"do": "bar", "from": {"point": "C"}, "to": {"at": [80, 60]}},
+        {"do": "driver", "point": "C", "link": "bar4", "on": "bar2"},
+    )
+    welded = tomllib.loads(edited(text, {"do": "weld", "point": "C", "link": "bar2", "with": "bar4"}))
+    assert welded["links"]["bar2"]["points"] == ["B", "C", "E"]
+    assert [drive["link"] for drive in welded["drives"]] == ["bar1"]
+    own = edited(shipped_text("crank-rocker"), {"do": "weld", "point": "C"})
+    assert structure(own)["mobility"]["freedoms"] == 0
+
+
+def test_several_edits_are_one_or_none() -> None:
+    text = edited(START, *FOUR_BAR)
+    many = [{"do": "delete", "point": "A"}, {"do": "delete", "link": "bar1"}, {"do": "delete", "link": "bar2"}]
+    assert set(tomllib.loads(edited(text, {"do": "all", "edits": many}))["links"]) == {"frame", "bar3"}
+    assert "no such point" in refused(
+        text, do="all", edits=[{"do": "delete", "point": "A"}, {"do": "ground", "point": "Z"}]
+    )
+
+
+def test_what_may_be_done_is_told_with_its_reasons() -> None:
+    text = edited(START, *FOUR_BAR)
+    edits = [{"do": "driver", "point": "A"}, {"do": "slide", "point": "C"}, {"do": "weld", "point": "Z"}]
+    why = answer(text, {"ask": "offers", "edits": edits})["why"]
+    assert (why[1], "driven already" in why[0], "no such point" in why[2]) == ("", True, True)
+
+
+def test_a_slide_turns_and_follows_its_point() -> None:
+    text = edited(
+        START,
+        {"do": "bar", "from": {"at": [0, 0]}, "to": {"at": [30, 40]}},
+        {"do": "slide", "point": "B"},
+        {"do": "turn", "pair": "block1/frame", "angle": 30},
+        {"do": "move", "point": "B", "to": [30, 44]},
+    )
+    assert tomllib.loads(text)["slides"][0]["angle"] == 30
+    at = {k: complex(*p) for k, p in tomllib.loads(text)["drawn"].items()}
+    assert np.angle(at["B"] - at["C"]) % np.pi == pytest.approx(np.deg2rad(30), abs=1e-5)

@@ -1,6 +1,9 @@
 // The drawing as SVG: made anew when the structure changes, only moved while it moves. Also what lies under a pointer.
 const SVG = "http://www.w3.org/2000/svg";
 const NEAR_PIN = 12, NEAR_BAR = 9, MARGIN = 70, LETTER = 13;
+// What is snapped to is so near, in pixels; two of them where they cross, so near.
+const NEAR = 6, NEAR_CROSSING = 10;
+const AWAY = 28, GUIDE = 70;
 
 const made = (name, attributes, parent) => {
   const node = document.createElementNS(SVG, name);
@@ -21,6 +24,32 @@ const isInside = (p, corners) => corners.reduce((odd, [x, y], k) => {
   return (y > p[1]) !== (v > p[1]) && p[0] < ((u - x) * (p[1] - y)) / (v - y) + x ? !odd : odd;
 }, false);
 
+const plus = (a, b, by = 1) => [a[0] + by * b[0], a[1] + by * b[1]];
+const unit = (a, b) => { const long = distance(a, b) || 1; return [(b[0] - a[0]) / long, (b[1] - a[1]) / long]; };
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1];
+
+// What a place can be snapped to, in the plane: a line { at, along } or a circle { at, radius }; each with its words.
+const nearest = (one, p) => {
+  if (one.along) return plus(one.at, one.along, dot(plus(p, one.at, -1), one.along));
+  return plus(one.at, unit(one.at, p), one.radius);
+};
+const onLine = (line, circle) => {
+  const foot = nearest(line, circle.at), rest = circle.radius ** 2 - distance(foot, circle.at) ** 2;
+  return rest < 0 ? [] : [1, -1].map((side) => plus(foot, line.along, side * Math.sqrt(rest)));
+};
+const crossings = (one, other) => {
+  if (one.along && other.along) {
+    const turn = one.along[0] * other.along[1] - one.along[1] * other.along[0], gap = plus(other.at, one.at, -1);
+    return Math.abs(turn) < 1e-6 ? [] : [plus(one.at, one.along, (gap[0] * other.along[1] - gap[1] * other.along[0]) / turn)];
+  }
+  if (one.along) return onLine(one, other);
+  if (other.along) return onLine(other, one);
+  const gap = distance(one.at, other.at);
+  if (!gap) return [];
+  const along = unit(one.at, other.at), part = (gap ** 2 + one.radius ** 2 - other.radius ** 2) / (2 * gap);
+  return onLine({ at: plus(one.at, along, part), along: [-along[1], along[0]] }, one);
+};
+
 export class Canvas {
   constructor(svg) {
     this.svg = svg;
@@ -29,7 +58,11 @@ export class Canvas {
     this.motion = null;
     this.pose = null;
     this.moved = {};
-    this.layers = ["traces", "guides", "links", "marks", "pins", "letters", "above"];
+    this.picked = new Set();
+    this.toggled = new Set();
+    this.locks = [];
+    this.photo = null;
+    this.layers = ["below", "traces", "guides", "shapes", "links", "marks", "pins", "letters", "above"];
     for (const name of this.layers) this[name] = made("g", { class: `layer-${name}` }, svg);
     new ResizeObserver(() => this.draw()).observe(svg);
   }
@@ -102,7 +135,9 @@ export class Canvas {
 
   // the point of the driven link by which the driver is dragged
   get handle() {
-    const drive = this.structure?.drives[0], link = this.structure?.links.find((one) => one.name === drive?.link);
+    const drive = this.structure?.drives[0], fixed = this.frame;
+    if (this.motion?.poses && this.cylinder(drive?.name)) return drive.points.find((one) => !fixed.includes(one)) ?? drive.points[0];
+    const link = this.structure?.links.find((one) => one.name === drive?.link);
     if (!link || !this.motion?.poses) return null;
     const pivot = this.place(drive.points[0]);
     const others = drive.is_angle ? link.points.filter((one) => !drive.points.includes(one)) : link.points;
@@ -110,12 +145,94 @@ export class Canvas {
     return others.sort((a, b) => away(b) - away(a))[0] ?? null;
   }
 
-  // what lies under a place of the screen: a point, else a link, else nothing
+  get frame() { return this.structure?.links.find((one) => one.name === "frame")?.points ?? []; }
+
+  get allLetters() { return Object.keys(this.structure?.points ?? {}); }
+
+  cylinder(name) { return this.structure?.pairs.find((one) => one.is_cylinder && one.name === name); }
+
+  link(name) { return this.structure?.links.find((one) => one.name === name); }
+
+  // the end of the chosen bar that can be drawn out, with the place of its handle, and the other end
+  get drawn() {
+    const link = this.link(this.chosen?.link), fixed = this.frame;
+    if (!link || link.name === "frame" || link.points.length < 2) return null;
+    const letter = link.points.toReversed().find((one) => !fixed.includes(one)) ?? link.points.at(-1);
+    const from = link.points.find((one) => one !== letter && fixed.includes(one)) ?? link.points.find((one) => one !== letter);
+    const [a, b] = [this.at(from), this.at(letter)];
+    return a && b && distance(a, b) > 1 ? { link: link.name, letter, from, at: plus(b, unit(a, b), AWAY) } : null;
+  }
+
+  // the slide of the chosen point whose direction can be turned, with the place of its handle
+  get turned() {
+    const letter = this.chosen?.point;
+    const pair = this.structure?.pairs.find((one) => one.guide && one.code === "P" && !one.is_cylinder && one.links[0] === "frame" && one.points[0] === letter);
+    const at = pair && this.at(letter);
+    if (!at) return null;
+    const angle = this.angle("frame") + pair.guide[2];
+    return { pair: pair.name, letter, angle, at: [at[0] + GUIDE * Math.cos(angle), at[1] - GUIDE * Math.sin(angle)] };
+  }
+
+  // links under a place of the screen: two where they cross
+  linksUnder(at) {
+    return (this.structure?.links ?? []).filter(({ name, points }) => {
+      const corners = points.map((one) => this.at(one)).filter(Boolean);
+      return name !== "frame" && corners.some((one, k) => k && toSegment(at, corners[k - 1], one) <= NEAR_BAR);
+    }).map((one) => one.name);
+  }
+
+  // lines and circles that a place can be snapped to: for a bar from a place, or for a point that is moved
+  #curves(from, letters, pivots) {
+    const found = [], links = (this.structure?.links ?? []).filter((one) => one.name !== "frame" && one.points.length > 1);
+    const sides = links.flatMap(({ name, points }) => points.slice(1).map((one, k) => ({ name, points: [points[k], one], ends: [this.place(points[k]), this.place(one)] })));
+    const known = sides.filter(({ ends: [a, b] }) => a && b && distance(a, b) > 0);
+    const others = known.filter((one) => !one.points.some((letter) => letters.includes(letter)));
+    for (const [at, letter] of pivots) {
+      found.push({ at, along: [1, 0], words: "horizontal", is_own: true }, { at, along: [0, 1], words: "vertical", is_own: true });
+      for (const { name, ends, points } of known) {
+        if (!points.some((one) => letters.includes(one))) found.push({ at, radius: distance(...ends), words: `as long as ${name}` });
+        if (letter && points.includes(letter) && !points.some((one) => letters.includes(one))) {
+          const along = unit(...ends);
+          found.push({ at, along: [-along[1], along[0]], words: `right angle to ${name}`, is_own: true }, { at, along, words: `in line with ${name}` });
+        }
+      }
+    }
+    for (const { name, ends } of others) found.push({ at: ends[0], along: unit(...ends), words: `on the line of ${name}` });
+    for (const { guide, links: [on], points } of this.structure?.pairs ?? []) {
+      if (guide && on === "frame" && !points.some((one) => letters.includes(one))) found.push({ at: [guide[0], guide[1]], along: [Math.cos(guide[2]), Math.sin(guide[2])], words: "on the guide" });
+    }
+    for (const letter of this.allLetters.filter((one) => !letters.includes(one))) {
+      const at = this.place(letter);
+      if (at && !pivots.some(([one]) => distance(one, at) === 0)) found.push({ at, along: [1, 0], words: `level with ${letter}` }, { at, along: [0, 1], words: `above ${letter}` });
+    }
+    return found;
+  }
+
+  // the place that a gesture means: what is near, snapped to, with what it was snapped to
+  snapped(at, { from = null, letters = [], pivots = [] } = {}) {
+    const here = this.plane(at), near = (p) => distance(p, here) * this.view.scale;
+    const close = this.#curves(from, letters, pivots).map((one) => ({ ...one, foot: nearest(one, here) }))
+      .filter((one) => near(one.foot) <= NEAR).sort((a, b) => near(a.foot) - near(b.foot) - (a.is_own ? 1 : 0) + (b.is_own ? 1 : 0));
+    if (!close.length) return { place: this.rounded(here), to: [] };
+    for (const [k, one] of close.entries()) {
+      for (const other of close.slice(k + 1)) {
+        const place = crossings(one, other).find((p) => near(p) <= NEAR_CROSSING);
+        if (place) return { place, to: [one, other] };
+      }
+    }
+    const [one] = close, place = [...one.foot], round = this.rounded(here);
+    if (one.along?.[0] === 1) place[0] = round[0];
+    if (one.along?.[1] === 1) place[1] = round[1];
+    return { place, to: [one] };
+  }
+
+  // what lies under a place of the screen: a point, else a link, else a cylinder, else nothing
   under(at, reach = 1, but = []) {
     let best = null, near = NEAR_PIN * reach;
     for (const letter of Object.keys(this.structure?.points ?? {})) {
       const there = but.includes(letter) ? null : this.at(letter);
-      if (there && distance(at, there) <= near) [best, near] = [{ point: letter }, distance(at, there)];
+      // of two at one place the older: the younger is that of its guide
+      if (there && distance(at, there) < near) [best, near] = [{ point: letter }, distance(at, there)];
     }
     if (best) return best;
     near = NEAR_BAR * reach;
@@ -127,6 +244,10 @@ export class Canvas {
       });
       if (corners.length > 2 && (isInside(at, corners) || toSegment(at, corners.at(-1), corners[0]) <= near)) best ??= { link: name };
     }
+    for (const { name, points, is_cylinder: is } of this.structure?.pairs ?? []) {
+      const [a, b] = is ? points.map((one) => this.at(one)) : [];
+      if (!best && a && b && toSegment(at, a, b) <= NEAR_BAR * reach) best = { pair: name };
+    }
     return best;
   }
 
@@ -136,7 +257,8 @@ export class Canvas {
   }
 
   draw() {
-    for (const name of this.layers) if (name !== "above") this[name].replaceChildren();
+    for (const name of this.layers) if (!["above", "below"].includes(name)) this[name].replaceChildren();
+    this.#photograph();
     if (!this.structure) return;
     const { links, pins, pairs, faults } = this.structure;
     const wrong = new Set(faults.filter((one) => one.what.includes("too many")).flatMap((one) => one.links));
@@ -157,18 +279,71 @@ export class Canvas {
     for (const letter of Object.keys(this.structure.points)) {
       const at = this.at(letter);
       if (!at) continue;
-      const state = `${this.over?.point === letter ? " over" : ""}${this.chosen?.point === letter ? " chosen" : ""}`;
+      const state = `${this.picked.has(letter) ? " picked" : ""}${this.over?.point === letter ? " over" : ""}${this.chosen?.point === letter ? " chosen" : ""}`;
       made("circle", { cx: at[0], cy: at[1], r: pins[letter] ? 5.5 : 4, class: `pin${pins[letter] ? "" : " end"}${state}`, "data-point": letter }, this.pins);
       made("text", { x: at[0] + LETTER, y: at[1] - LETTER + 3 }, this.letters).textContent = letter;
     }
+    this.#locks();
+    const { drawn, turned } = this;
+    if (drawn) made("rect", { x: drawn.at[0] - 6, y: drawn.at[1] - 6, width: 12, height: 12, class: "grip" }, this.letters);
+    if (turned) made("circle", { cx: turned.at[0], cy: turned.at[1], r: 7, class: "grip" }, this.letters);
   }
 
-  // the paths of points that only one moving link has, and of the one that is chosen
+  #photograph() {
+    const { photo } = this;
+    if (!photo) { this.below.replaceChildren(); return; }
+    const [x, y] = this.screen([photo.x, photo.y]), by = photo.scale * this.view.scale;
+    let image = this.below.firstChild;
+    if (!image) image = made("image", { preserveAspectRatio: "none" }, this.below);
+    if (image.getAttribute("href") !== photo.href) image.setAttribute("href", photo.href);
+    for (const [key, value] of Object.entries({ x, y, width: photo.wide * by, height: photo.high * by, opacity: photo.opacity })) image.setAttribute(key, value);
+  }
+
+  #locks() {
+    for (const { what, points } of this.locks) {
+      const places = points.map((one) => this.at(one)), [a, b] = places;
+      if (places.some((one) => !one)) continue;
+      if (what === "point") { made("path", { d: `M${a[0] - 9} ${a[1] - 9}h18v18h-18Z`, class: "lock" }, this.marks); continue; }
+      const [x, y] = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], [u, v] = unit(a, b), [p, q] = [-v * 9, u * 9];
+      const tick = (by) => `M${x + by * u - p} ${y + by * v - q}L${x + by * u + p} ${y + by * v + q}`;
+      made("path", { d: what === "length" ? tick(-3) + tick(3) : `M${x - 9} ${y}a9 9 0 1 0 18 0a9 9 0 1 0 -18 0`, class: "lock" }, this.marks);
+    }
+  }
+
+  // a wheel or a profile, in the frame of its link
+  #shape(shape) {
+    const own = this.pose === null ? null : this.motion?.origins[shape.link];
+    const origin = own ? [own[0][this.pose], own[1][this.pose]] : this.structure.origins[shape.link] ?? [0, 0];
+    const turned = this.angle(shape.link), [c, s] = [Math.cos(turned), Math.sin(turned)];
+    const at = ([x, y]) => this.screen([origin[0] + c * x - s * y, origin[1] + s * x + c * y]);
+    const style = `shape${colour(this.link(shape.link)?.colour)}`;
+    if (shape.line) {
+      const path = shape.line[0].map((x, k) => at([x, shape.line[1][k]]).map((n) => n.toFixed(2)).join(" ")).join("L");
+      made("path", { d: `M${path}${shape.is_closed ? "Z" : ""}`, class: style }, this.shapes);
+      return;
+    }
+    const [x, y] = at(shape.at), r = shape.radius * this.view.scale;
+    made("circle", { cx: x, cy: y, r, class: `${style}${shape.teeth ? " gear" : ""}` }, this.shapes);
+    // a spoke shows how it turns
+    made("path", { d: `M${x} ${y}L${x + r * c} ${y - r * s}`, class: `${style} spoke` }, this.shapes);
+  }
+
+  #cylinder([a, b]) {
+    const [u, v] = unit(b, a), long = distance(a, b), barrel = Math.min(0.62 * long, long - 14);
+    made("path", { d: `M${b[0]} ${b[1]}L${b[0] + barrel * u} ${b[1] + barrel * v}`, class: "barrel" }, this.links);
+    made("path", { d: `M${b[0]} ${b[1]}L${b[0] + barrel * u} ${b[1] + barrel * v}`, class: "barrel inner" }, this.links);
+    made("path", { d: `M${b[0] + 0.5 * barrel * u} ${b[1] + 0.5 * barrel * v}L${a[0]} ${a[1]}`, class: "rod" }, this.links);
+  }
+
+  // whether a point's path is shown: of those that only one moving link has, unless it was chosen otherwise
+  isTraced(letter) { return (!this.frame.includes(letter) && !this.structure.pins[letter]) !== this.toggled.has(letter); }
+
+  // the paths of points, also of the one that is chosen
   #traces() {
     if (!this.motion?.poses) return;
     const frame = this.structure.links.find((one) => one.name === "frame")?.points ?? [];
     for (const [letter, [xs, ys]] of Object.entries(this.motion.points)) {
-      if (frame.includes(letter) || (this.structure.pins[letter] && this.chosen?.point !== letter)) continue;
+      if (!this.isTraced(letter) && (this.chosen?.point !== letter || frame.includes(letter))) continue;
       let path = "", pen = "M";
       xs.forEach((x, k) => {
         if (x === null) { pen = "M"; return; }
@@ -187,6 +362,8 @@ export class Canvas {
 
   #pair(pair) {
     const places = pair.points.map((one) => this.at(one)).filter(Boolean);
+    if (pair.shapes?.length) { for (const one of pair.shapes) this.#shape(one); return; }
+    if (pair.is_cylinder) { if (places.length > 1) this.#cylinder(places); return; }
     if (pair.guide && places.length > 1) {
       const [on] = pair.links, turned = -(this.angle(on) + pair.guide[2]), degrees = (turned * 180) / Math.PI;
       const [x, y] = places[0], [ux, uy] = [Math.cos(turned), Math.sin(turned)];
@@ -212,10 +389,19 @@ export class Canvas {
     if (at) made("circle", { cx: at[0], cy: at[1], r: 12, class: "handle" }, this.marks);
   }
 
-  // what a gesture shows above the drawing: the bar to be, the ring around what would be joined
-  sketch(from, to, ring) {
+  // what a gesture shows above the drawing: the bar to be, the ring around what would be joined, what it snaps to
+  sketch({ from, to, ring, words, snaps = [], box, guide } = {}) {
     this.above.replaceChildren();
+    const far = Math.hypot(...this.size);
+    for (const one of snaps) {
+      const [x, y] = this.screen(one.at);
+      if (one.along) made("path", { d: `M${x - far * one.along[0]} ${y + far * one.along[1]}L${x + far * one.along[0]} ${y - far * one.along[1]}`, class: "snap" }, this.above);
+      else made("circle", { cx: x, cy: y, r: one.radius * this.view.scale, class: "snap" }, this.above);
+    }
+    if (guide) made("path", { d: `M${guide.at[0] - far * Math.cos(guide.angle)} ${guide.at[1] + far * Math.sin(guide.angle)}L${guide.at[0] + far * Math.cos(guide.angle)} ${guide.at[1] - far * Math.sin(guide.angle)}`, class: "snap" }, this.above);
+    if (box) made("rect", { x: Math.min(box[0][0], box[1][0]), y: Math.min(box[0][1], box[1][1]), width: Math.abs(box[0][0] - box[1][0]), height: Math.abs(box[0][1] - box[1][1]), class: "box" }, this.above);
     if (from && to) made("line", { x1: from[0], y1: from[1], x2: to[0], y2: to[1], class: "rubber" }, this.above);
     if (ring) made("circle", { cx: ring[0], cy: ring[1], r: 15, class: "ring" }, this.above);
+    if (words && to) made("text", { x: to[0] + 16, y: to[1] + 24 }, this.above).textContent = words;
   }
 }

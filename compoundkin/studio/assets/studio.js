@@ -147,6 +147,25 @@ class Studio {
     return this.queue;
   }
 
+  ask(question) { return this.wire.ask({ document: this.text, question }); }
+
+  // where points would go by an edit, while its gesture lasts
+  async preview(edit) {
+    this.newest = edit;
+    if (this.isPreviewing) return;
+    this.isPreviewing = true;
+    while (this.newest) {
+      const asked = this.newest;
+      this.newest = null;
+      const { made, problems } = await this.ask({ ask: "edit", edit: asked, pose: this.canvas.pose });
+      if (!this.gestures.held) break;
+      this.canvas.moved = made?.places ?? {};
+      this.canvas.draw();
+      if (problems?.length) this.say(`Not there: ${problems[0].what}`);
+    }
+    [this.newest, this.isPreviewing] = [null, false];
+  }
+
   async save(mark = this.mark) {
     const text = this.text, reply = await this.wire.ask({ document: text, save: true, mark });
     if (reply.is_saved) {
@@ -224,9 +243,10 @@ class Studio {
   }
 
   // what is chosen may be no more
-  #forget({ points, links }) {
-    const isThere = (it) => it && (it.point ? it.point in points : links.some((one) => one.name === it.link));
+  #forget({ points, links, pairs }) {
+    const isThere = (it) => it && (it.point ? it.point in points : it.pair ? pairs.some((one) => one.name === it.pair) : links.some((one) => one.name === it.link));
     for (const key of ["chosen", "over"]) if (!isThere(this.canvas[key])) this.canvas[key] = null;
+    for (const letter of this.canvas.picked) if (!(letter in points)) this.canvas.picked.delete(letter);
   }
 
   #state() {
@@ -275,7 +295,7 @@ class Studio {
     if (linksOf(rest).length) rows.unshift(row(swatch(0), element("span", moves ? "driven" : "links"), ...linksOf(rest)));
     if (loose.length) rows.push(row(element("span", "loose"), ...linksOf(loose)));
     if (Object.keys(points).length) rows.push(row(element("span", "points"), ...Object.keys(points).map((one) => pick(one, { point: one }))));
-    const other = pairs.filter((one) => one.code !== "P").map((one) => `${one.name} (${one.kind})`);
+    const other = pairs.filter((one) => one.code !== "P" && !one.shapes?.length).map((one) => `${one.name} (${one.kind})`);
     if (other.length) rows.push(row(element("span", `drawn by their points only: ${other.join(", ")}`, { class: "quiet" })));
     part("structure").replaceChildren(...rows);
   }
@@ -348,13 +368,13 @@ class Studio {
   // --- what gestures ask, and keys
 
   linksAt(letter) { return this.structure?.links.filter((one) => one.points.includes(letter)).map((one) => one.name) ?? []; }
-  driveAt(letter) { return this.structure?.drives.find((one) => one.points[0] === letter)?.name; }
-  slideAt(letter) { return this.structure?.pairs.find((one) => one.code === "P" && one.points[0] === letter)?.name; }
+  driveAt(letter) { return this.structure?.drives.find((one) => one.points[0] === letter && !this.canvas.cylinder(one.name))?.name; }
+  slideAt(letter) { return this.structure?.pairs.find((one) => one.code === "P" && !one.is_cylinder && one.points[0] === letter)?.name; }
   say(text) { part("hint").textContent = text; }
 
   choose(tool) {
     this.gestures.choose(tool);
-    for (const one of ["draw", "move"]) part(`tool-${one}`).setAttribute("aria-pressed", String(one === tool));
+    for (const one of ["draw", "move", "cylinder"]) part(`tool-${one}`).setAttribute("aria-pressed", String(one === tool));
   }
 
   #listen() {
@@ -367,7 +387,10 @@ class Studio {
     on("home", () => { this.halt(); this.canvas.pose = null; this.canvas.draw(); this.#driver(); });
     on("tool-draw", () => this.choose("draw"));
     on("tool-move", () => this.choose("move"));
-    for (const what of ["ground", "driver", "slide", "delete"]) {
+    on("tool-cylinder", () => this.choose("cylinder"));
+    on("add-photo", () => part("photo").click());
+    part("photo").addEventListener("change", ({ target }) => { this.gestures.photograph(target.files[0]); target.value = ""; });
+    for (const what of ["ground", "driver", "slide", "gear", "cam", "lock", "delete"]) {
       // what is under the pointer is the button
       on(`do-${what}`, () => { this.canvas.over = null; this.gestures.act(what); });
     }
@@ -384,10 +407,16 @@ class Studio {
   #key(event) {
     const key = event.key.toLowerCase(), isCommand = event.ctrlKey || event.metaKey;
     const isText = event.target.matches("textarea"), isButton = event.target.matches("button, input");
+    if (event.target.closest("dialog")) return;
+    if (!isText && !isCommand && !(isButton && key === "enter") && event.target.type !== "number" && this.gestures.key(event)) { event.preventDefault(); return; }
     if (isCommand && key === "s") this.save();
     else if (isCommand && key === "z") this.step(event.shiftKey ? 1 : -1);
     else if (isCommand && key === "y") this.step(1);
+    else if (isCommand && key === "a" && !isText) this.gestures.pickAll();
     else if (isText || isCommand || event.altKey || (isButton && [" ", "enter", "arrowleft", "arrowright", "arrowup", "arrowdown"].includes(key))) return;
+    else if (key === "contextmenu" || (key === "f10" && event.shiftKey)) this.gestures.menuOfKey();
+    else if (key in { w: 1, t: 1, l: 1, r: 1, k: 1 }) this.gestures.act({ w: "weld", t: "trace", l: "lock", r: "gear", k: "cam" }[key]);
+    else if (key === "c") this.choose("cylinder");
     else if (key === "g") this.gestures.act("ground");
     else if (key === "d") this.gestures.act("driver");
     else if (key === "s") this.gestures.act("slide");
@@ -398,7 +427,13 @@ class Studio {
     else if (key === "n") this.gestures.bar();
     else if (key === "f") this.canvas.fit();
     else if (key === " ") this.play();
-    else if (key === "escape") { this.gestures.stop(); this.canvas.chosen = null; this.canvas.draw(); }
+    else if (key === "escape") {
+      this.gestures.stop();
+      this.canvas.chosen = null;
+      this.canvas.picked.clear();
+      if (this.gestures.tool !== "draw") this.choose("move");
+      this.canvas.draw();
+    }
     else if (key.startsWith("arrow")) this.gestures.nudge({ arrowleft: [-8, 0], arrowright: [8, 0], arrowup: [0, -8], arrowdown: [0, 8] }[key]);
     else return;
     event.preventDefault();

@@ -89,13 +89,45 @@ class Window:
     def at(self, place: tuple[float, float]) -> tuple[float, float]:
         return self.middle[0] + place[0], self.middle[1] + place[1]
 
-    def drag(self, start: tuple[float, float], end: tuple[float, float]) -> None:
+    def drag(self, start: tuple[float, float], end: tuple[float, float], key: str = "", free: bool = False) -> None:
+        """Drag with a key held; `free` with Ctrl pressed on the way, so that nothing is snapped to."""
+        self.hold(start, end, key, free)
+        self.view.mouse.up()
+        for one in filter(None, (key, "Control" if free else "")):
+            self.view.keyboard.up(one)
+        self.settle()
+
+    def hold(self, start: tuple[float, float], end: tuple[float, float], key: str = "", free: bool = False) -> None:
+        """Drag and do not let go."""
         (x, y), (u, v) = self.at(start), self.at(end)
         self.view.mouse.move(x, y)
+        if key:
+            self.view.keyboard.down(key)
         self.view.mouse.down()
+        if free:
+            self.view.keyboard.down("Control")
         self.view.mouse.move((x + u) / 2, (y + v) / 2)
         self.view.mouse.move(u, v)
-        self.view.mouse.up()
+
+    def where(self, letter: str) -> tuple[float, float]:
+        """Where a point is, from the canvas's middle."""
+        (x, y), (wide, high) = self.value(f"[studio.canvas.at('{letter}'), studio.canvas.size]")
+        return x - wide / 2, y - high / 2
+
+    def where_plane(self, place: tuple[float, float]) -> complex:
+        """The place in the plane of the mechanism."""
+        wide, high = self.value("studio.canvas.size")
+        return complex(*self.value(f"studio.canvas.plane([{place[0] + wide / 2}, {place[1] + high / 2}])"))
+
+    def menu(self, place: tuple[float, float]) -> Any:
+        self.view.mouse.click(*self.at(place), button="right")
+        found = self.view.locator(".menu")
+        found.wait_for()
+        return found
+
+    def pick(self, place: tuple[float, float], words: str) -> None:
+        """Do what a menu offers at a place."""
+        self.menu(place).get_by_role("menuitem", name=words).click()
         self.settle()
 
     def press(self, place: tuple[float, float], key: str) -> None:
@@ -131,6 +163,10 @@ def same_motion(drawn: ck.Mechanism, by_hand: ck.Mechanism, names: dict[str, str
 
 
 A, B, C, D = (-200, 100), (-150, 0), (100, -120), (150, 100)
+
+
+def middle_of(one: tuple[float, float], other: tuple[float, float]) -> tuple[float, float]:
+    return (one[0] + other[0]) / 2, (one[1] + other[1]) / 2
 
 
 def four_bar(seen: Window) -> None:
@@ -197,17 +233,14 @@ def six_bar(seen: Window) -> None:
     seen.value("Object.assign(studio.canvas.view, { scale: 10, x: 20, y: -14 })")
     px = {k: ((x - 20) * 10, -(y + 14) * 10) for k, (x, y) in SIX_BAR.items()}
 
-    def middle(one: str, other: str) -> tuple[float, float]:
-        return (px[one][0] + px[other][0]) / 2, (px[one][1] + px[other][1]) / 2
-
     for start, end in ("ED", "DA", "AB", "FG"):
-        seen.drag(px[start], px[end])
-    seen.view.mouse.click(*seen.at(middle("D", "A")))
+        seen.drag(px[start], px[end], free=True)
+    seen.view.mouse.click(*seen.at(middle_of(px["D"], px["A"])))
     seen.press(px["C"], "p")
     for letter in "EBF":
         seen.press(px[letter], "g")
     seen.view.mouse.click(*seen.at(px["C"]))
-    seen.press(middle("F", "C"), "s")
+    seen.press(middle_of(px["F"], px["C"]), "s")
     seen.press(px["E"], "d")
 
 
@@ -228,6 +261,256 @@ def test_the_six_bar_of_the_textbook_is_drawn(window: Any) -> None:
     )
     same_motion(seen.save(), by_hand, dict(zip("ABCDEFG", "EDABFGC", strict=True)))
     assert seen.view.locator("#chip").inner_text() == "F = 3·5 − 2·7 = 1: moves"
+    assert seen.complaints == []
+
+
+# Of a shaper, in pixels at four a unit: crank, pivot and end of the slotted arm, end of the rod.
+SHAPER = {"O": (0, 40), "A": (72, -10), "Q": (0, 200), "E": (120, -150), "C": (-120, -190)}
+
+
+def quick_return(seen: Window) -> None:
+    px = SHAPER
+    for start, end in ("OA", "QE", "EC"):
+        seen.drag(px[start], px[end], free=True)
+    for letter in "OQ":
+        seen.press(px[letter], "g")
+    seen.press(px["C"], "s")
+    seen.view.keyboard.press("Escape")
+    on_arm = tuple(0.7 * a + 0.3 * b for a, b in zip(px["Q"], px["E"], strict=True))
+    seen.view.mouse.click(*seen.at(px["A"]))
+    seen.pick(on_arm, "Slot for B along bar2")
+    seen.press(px["O"], "d")
+
+
+def test_a_quick_return_with_a_slot_is_drawn(window: Any) -> None:
+    """The crank's pin slides along the arm: a block of one point, beside the line of the arm's two points."""
+    seen = window()
+    quick_return(seen)
+    at = {k: complex(x, -y) / 4 for k, (x, y) in SHAPER.items()}
+    line = (at["E"] - at["Q"]) / abs(at["E"] - at["Q"])
+    by_hand = ck.Mechanism(
+        "By hand",
+        ck.link("frame", O=at["O"], Q=at["Q"], G=at["C"]),
+        ck.link("crank", O=0, A=abs(at["A"] - at["O"])),
+        ck.link("arm", Q=0, E=abs(at["E"] - at["Q"])),
+        ck.link("rod", E=0, C=abs(at["C"] - at["E"])),
+        ck.link("block", A=0),
+        ck.link("ram", C=0),
+        ck.slide("block", on="arm", through="Q", offset=((at["A"] - at["Q"]) * line.conjugate()).imag),
+        ck.slide("ram", on="frame", through="G"),
+        ck.drive("crank"),
+        ck.drawn(A=at["A"], E=at["E"], C=at["C"]),
+    )
+    drawn = seen.save()
+    names = dict(zip("ABCDE", "OAQEC", strict=True))
+    one, other = ck.solve(drawn), ck.solve(by_hand)
+    # the direction of the drawn crank is that of its points, as by hand; the slot of the drawing goes through its pin
+    for letter, own in names.items():
+        np.testing.assert_allclose(one.points[letter].position, other.points[own].position, rtol=0, atol=1e-9)
+    assert seen.view.locator("#chip").inner_text() == "F = 3·5 − 2·7 = 1: moves"
+    assert seen.complaints == []
+
+
+# Of a digger, in pixels at four a unit: boom's pivot and end, where its cylinder pushes, that of the stick.
+DIGGER = {
+    "A": (-160, 120),
+    "B": (60, -80),
+    "C": (-50, 20),
+    "D": (-60, 140),
+    "E": (160, 60),
+    "F": (0, -120),
+    "G": (110, -10),
+}
+
+
+def digger_arm(seen: Window) -> None:
+    px = DIGGER
+    seen.drag(px["A"], px["B"], free=True)
+    seen.press(px["A"], "g")
+    seen.drag(px["B"], px["E"], free=True)
+    seen.view.keyboard.press("c")
+    seen.drag(px["D"], px["C"], free=True)
+    seen.drag(tuple(0.2 * a + 0.8 * b for a, b in zip(px["A"], px["B"], strict=True)), px["G"], free=True)
+    seen.view.keyboard.press("b")
+    for name in ("cylinder1", "cylinder2"):
+        a, b = seen.value(f"studio.canvas.cylinder('{name}').points.map((one) => studio.canvas.at(one))")
+        wide, high = seen.value("studio.canvas.size")
+        seen.press(((a[0] + b[0] - wide) / 2, (a[1] + b[1] - high) / 2), "d")
+
+
+def test_a_digger_arm_with_cylinders_is_drawn(window: Any) -> None:
+    """The ends of the cylinders become points of boom, stick and frame; each is driven by its length."""
+    seen = window()
+    digger_arm(seen)
+    drawn = seen.save()
+    at = drawn.sketch
+    assert {name: link.letters for name, link in drawn.links.items() if " " not in name} == {
+        "bar1": ("A", "B", "E", "F"), "bar2": ("B", "C", "G"), "frame": ("A", "D"),
+    }  # fmt: skip
+    a, b = at["A"], at["B"]
+    along = (b - a) / abs(b - a)
+    stick = (at["C"] - b) / abs(at["C"] - b)
+    by_hand = ck.Mechanism(
+        "By hand",
+        ck.link("frame", A=a, D=at["D"]),
+        ck.link("boom", A=0, B=abs(b - a), E=(at["E"] - a) / along, F=(at["F"] - a) / along),
+        ck.link("stick", B=0, C=abs(at["C"] - b), G=(at["G"] - b) / stick),
+        ck.cylinder("boom", "E", at="D", name="lift"),
+        ck.cylinder("stick", "G", to="boom", at="F", name="curl"),
+        ck.drive("lift"),
+        ck.drive("curl"),
+        ck.drawn(**{k: complex(p) for k, p in at.items() if k not in "AD"}),
+    )
+    long = abs(at["E"] - at["D"]), abs(at["G"] - at["F"])
+    lengths = [part * np.linspace(0.95, 1.1, 7) for part in long]
+    one = ck.solve(drawn, dict(zip(("cylinder1", "cylinder2"), lengths, strict=True)))
+    other = ck.solve(by_hand, dict(zip(("lift", "curl"), lengths, strict=True)))
+    assert one.assembled.all()
+    for letter in "BCEFG":
+        np.testing.assert_allclose(one.points[letter].position, other.points[letter].position, rtol=0, atol=1e-9)
+    assert seen.complaints == []
+
+
+def at_of(seen: Window) -> dict[str, complex]:
+    """Where the text has its points drawn."""
+    return {k: complex(p) for k, p in loads(seen.text).sketch.items()}
+
+
+def test_what_is_drawn_snaps_and_takes_typed_lengths(window: Any) -> None:
+    """A bar as long as another at a right angle to it, said before it is; one of a typed length and direction."""
+    seen = window()
+    four_bar(seen)
+    turned = B[0] + 100 + 3, B[1] + 50 - 2
+    seen.hold(B, turned)
+    said = seen.view.locator("#hint").inner_text()
+    assert "right angle to bar1" in said
+    assert "as long as bar1" in said
+    assert seen.value("document.querySelectorAll('#canvas .snap').length") == 2
+    seen.view.mouse.up()
+    seen.settle()
+    at = at_of(seen)
+    assert abs(at["E"] - at["B"]) == pytest.approx(abs(at["B"] - at["A"]), abs=1e-5)
+    assert ((at["E"] - at["B"]) / (at["B"] - at["A"])).real == pytest.approx(0, abs=1e-6)
+    seen.hold(C, (C[0] + 40, C[1] - 60))
+    seen.view.keyboard.type("32.5<-30")
+    seen.view.keyboard.press("Enter")
+    seen.view.mouse.up()
+    seen.settle()
+    at = at_of(seen)
+    assert at["F"] - at["C"] == pytest.approx(32.5 * np.exp(-1j * np.pi / 6), abs=1e-4)
+    assert seen.complaints == []
+
+
+def test_one_bar_grows_alone_locks_hold_and_several_move(window: Any) -> None:
+    seen = window()
+    four_bar(seen)
+
+    def lengths() -> list[float]:
+        at = at_of(seen)
+        return [abs(at[a] - at[b]) for a, b in ("AB", "BC", "CD")]
+
+    before = lengths()
+    seen.drag(B, (B[0] + 8, B[1] - 16), "Control")
+    after = lengths()
+    assert after[0] == pytest.approx(before[0] + 20 / 4 * 0.894, abs=0.6)
+    assert after[1:] == pytest.approx(before[1:], abs=1e-4)
+    # a chosen bar takes a typed length
+    seen.view.mouse.click(*seen.at(middle_of(seen.where("A"), seen.where("B"))))
+    seen.view.keyboard.type("27")
+    seen.view.keyboard.press("Enter")
+    seen.settle()
+    assert lengths() == pytest.approx([27, *before[1:]], abs=1e-4)
+    # a locked length is held while its end is moved
+    seen.pick(middle_of(seen.where("B"), seen.where("C")), "Lock its length")
+    x, y = seen.where("C")
+    seen.drag((x, y), (x + 20, y + 40), "Shift")
+    assert lengths()[1] == pytest.approx(before[1], abs=1e-4)
+    assert lengths()[2] != pytest.approx(before[2], abs=1)
+    # a box chooses several, which move together; one undo takes all back
+    text, at = seen.text, at_of(seen)
+    seen.view.keyboard.press("v")
+    seen.drag((-300, -200), (240, 60))
+    assert set(seen.value("[...studio.canvas.picked]")) == {"B", "C"}
+    x, y = seen.where("C")
+    seen.drag((x, y), (x + 40, y + 40), free=True)
+    assert {k for k, p in at_of(seen).items() if abs(p - at[k]) > 5} == {"B", "C"}
+    seen.view.keyboard.press("Control+z")
+    seen.settle()
+    assert seen.text == text
+    assert seen.complaints == []
+
+
+def test_the_menu_says_why_and_forms_make_gears(window: Any) -> None:
+    """What cannot be done is grey, with its reason; Alt takes a bar off; a slide is turned by its grip."""
+    seen = window()
+    four_bar(seen)
+    seen.view.keyboard.press("Escape")
+    found = seen.menu(B)
+    gears = found.get_by_role("menuitem", name="Gears at")
+    assert gears.get_attribute("aria-disabled") == "true"
+    assert "click the other point first" in gears.inner_text()
+    assert found.get_by_role("menuitem", name="Weld bar1 and bar2").get_attribute("aria-disabled") is None
+    seen.view.keyboard.press("Escape")
+    again = seen.menu(middle_of(B, C)).get_by_role("menuitem", name="Slot for")
+    assert "bar2 has the point B" in again.inner_text()  # for B, whose menu was open
+    seen.view.keyboard.press("Escape")
+    seen.view.mouse.click(*seen.at((300, 250)))
+    seen.view.mouse.click(*seen.at(A))
+    seen.pick(D, "Gears at A and D")
+    form = seen.view.locator("dialog")
+    form.get_by_label("On, at A").select_option("bar1")
+    form.get_by_role("button", name="Do it").click()
+    seen.settle()
+    (pair,) = loads(seen.text).written_pairs
+    assert (pair.code, pair.members[0]) == ("G", "bar1")
+    assert seen.value("document.querySelectorAll('#canvas .gear').length") == 2
+    seen.view.keyboard.press("v")
+    seen.drag(C, (C[0] + 60, C[1] - 40), "Alt")
+    assert "E" in at_of(seen)
+    x, y = seen.where("E")
+    seen.press((x, y), "s")
+    seen.view.mouse.click(*seen.at((x, y)))
+    seen.drag((x + 70, y), (x + 50, y - 50))
+    assert "angle = 45" in seen.text
+    assert seen.complaints == []
+
+
+LISTEN = """() => {
+  const { socket } = studio.wire, send = socket.send.bind(socket);
+  window.sent = [];
+  socket.send = (message) => { window.sent.push(message); send(message); };
+}"""
+PHOTO = """async () => {
+  const sheet = Object.assign(document.createElement("canvas"), { width: 200, height: 100 });
+  sheet.getContext("2d").fillRect(20, 20, 160, 60);
+  const blob = await new Promise((take) => sheet.toBlob(take));
+  await studio.gestures.photograph(new File([blob], "photo.png", { type: "image/png" }));
+}"""
+
+
+def test_a_photograph_beneath_is_scaled_kept_and_sent_nowhere(window: Any) -> None:
+    seen = window()
+    sent: list[str] = []
+    seen.view.on("request", lambda request: sent.append(request.url))
+    seen.value(LISTEN)
+    seen.value(PHOTO)
+    for place in ((-100, 0), (100, 0)):
+        seen.view.mouse.click(*seen.at(place))
+    form = seen.view.locator("dialog")
+    form.get_by_label("drawing's unit").fill("10")
+    form.get_by_role("button", name="Do it").click()
+    seen.until("studio.gestures.tool === 'draw'")
+    x, y = seen.where_plane((-100, 0)), seen.where_plane((100, 0))
+    assert abs(x - y) == pytest.approx(10, abs=1e-6)
+    before = seen.value("[studio.canvas.photo.scale, studio.canvas.photo.x]")
+    assert all(one.startswith("data:") for one in sent)
+    assert "data:image" not in str(seen.value("window.sent"))
+    seen.view.wait_for_timeout(150)
+    seen.view.reload()
+    seen.settle()
+    seen.until("Boolean(studio.canvas.photo)")
+    assert seen.value("[studio.canvas.photo.scale, studio.canvas.photo.x]") == pytest.approx(before)
+    seen.pick((300, 200), "Take the photograph away")
     assert seen.complaints == []
 
 
