@@ -13,7 +13,7 @@ from compoundkin.base.arrays import Number, dot
 from compoundkin.base.display import DisplaysHtml
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.derived.cam_follower import direction_of, pressure_angle, velocity_at
+from compoundkin.kinematics.derived.guides import direction_of, pressure_angle, velocity_at
 from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
 from compoundkin.model.profiles import Synthesised
 

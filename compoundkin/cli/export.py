@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, nearest, suggestion
+from compoundkin.base.errors import InvalidInput, Problem, nearest, suggestion
 from compoundkin.base.suffixes import SUFFIXES, file_format, suffix_for, suffix_of
 from compoundkin.cli.drive_options import MODE, names_option, read_assembly_modes
 from compoundkin.cli.file_options import load_mechanism, mechanism_argument, to_file, write_new
 from compoundkin.cli.shell import put, say, working
 from compoundkin.files.exchange import MODULES, READ_ONLY
 from compoundkin.files.exchange.content import is_itself
-from compoundkin.model.attributes import OF_POINTS
 
 if TYPE_CHECKING:
     Choice = click.Choice[str]
@@ -145,29 +144,18 @@ def _format_of(path: str, suffix: str) -> str:
 
 def _program(structure: Structure, form: str, name: str, options: Mapping[str, Any]) -> bytes:
     """Return a function in another language."""
-    from compoundkin.programs.compiled_path import compile
+    from compoundkin.programs.compiled_path import compile, recorded_outputs
 
     _refuse(form, options, OF_POSES)
     modes = read_assembly_modes(structure, options["modes"]) or None
-    outputs = options["outputs"] or _default_outputs(structure)
+    outputs = list(options["outputs"])
+    if not outputs:
+        outputs, left_out = recorded_outputs(structure)
+        for why in left_out:
+            say(f"Left out: {why}")
     with working("solving"):
         text = compile(structure, outputs, free=options["free"], modes=modes).source(form, name)
     return text.encode("utf-8")
-
-
-def _default_outputs(structure: Structure) -> list[str]:
-    """Return the outputs of the file that a program can compute, else the positions of all points."""
-    from compoundkin.kinematics import solve
-    from compoundkin.programs.recording.recorded_motion import output_of
-
-    found: list[str] = []
-    motion = solve(structure, order=0)
-    for name in structure.mechanism.outputs:
-        try:
-            found.append(output_of(motion, name).name)
-        except (UnknownName, InvalidInput) as error:
-            say(f"Left out: {error}")
-    return found or [f"{point}.{OF_POINTS[0]}" for point in structure.mechanism.carriers]
 
 
 def _foreign_file(structure: Structure, form: str, options: Mapping[str, Any]) -> bytes:

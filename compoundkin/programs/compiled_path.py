@@ -9,10 +9,11 @@ from functools import cached_property
 from typing import Any
 
 from compoundkin.base.arguments import checked
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName
 from compoundkin.base.linear import one_thread
 from compoundkin.kinematics.configuration import SIGNS, Configuration, named
 from compoundkin.kinematics.solution import first_configuration, solve
+from compoundkin.model.attributes import POSITION
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.backends import chosen_back_end
 from compoundkin.programs.call_numbers import Call
@@ -78,6 +79,21 @@ def compile(
         PathPrograms(motion, tuple(output_of(motion, name) for name in names), dimensions, backend),
         {**request, "backend": backend},
     )
+
+
+def recorded_outputs(structure: Structure) -> tuple[list[str], list[str]]:
+    """Return the outputs that a mechanism names and a program can compute, else the positions of all points.
+
+    Return also why others cannot.
+    """
+    found, left_out = list[str](), list[str]()
+    motion = solve(structure, order=0)
+    for name in structure.mechanism.outputs:
+        try:
+            found.append(output_of(motion, name).name)
+        except (UnknownName, InvalidInput) as error:
+            left_out.append(str(error))
+    return found or [f"{point}.{POSITION}" for point in structure.mechanism.carriers], left_out
 
 
 def compile_request(request: Mapping[str, Any]) -> CompiledPath:

@@ -10,10 +10,11 @@ from __future__ import annotations
 import cmath
 import re
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import product
 from math import floor, isfinite, log10
 from typing import Any, TypeAlias
 
@@ -37,6 +38,7 @@ from compoundkin.model.pairs.symbols import Groove, Outline, Wheel
 from compoundkin.structure import Fault, Structure, decompose
 from compoundkin.studio.edited_document import Document, Placement
 from compoundkin.studio.edits import edited
+from compoundkin.studio.findings import OF_FILES, OF_MECHANISMS, DrivenStructure, chosen_configuration
 
 Reply: TypeAlias = dict[str, Any]
 
@@ -575,7 +577,7 @@ def _motion(document: str, question: Mapping[str, Any]) -> Reply:
 
     turned = {name for pair in motion.mechanism.written_pairs for name in pair.members} - {FRAME}
     names = list(motion.drives)
-    places = {letter: np.atleast_2d(point.position) for letter, point in motion.points.items()}
+    places = _known_places(motion)
     return {
         "poses": len(good),
         "drives": {
@@ -597,11 +599,40 @@ def _motion(document: str, question: Mapping[str, Any]) -> Reply:
         "assembled": [int(one) for one in good],
         "start": _nearest(motion, drawing_of(reading)),
         "gaps": [
-            {"from": gap.first, "to": gap.last, "why": gap.reason, "links": list(gap.links)}
+            {
+                **{"from": gap.first, "to": gap.last, "why": gap.reason, "links": list(gap.links)},
+                "circles": [] if gap.pair else list(_circles(motion, gap.links)),
+            }
             for gap in (gaps(motion) if not good.all() else ())
         ],
         "problems": [],
     }
+
+
+def _known_places(motion: Motion) -> dict[str, Number]:
+    """Return where points are, (1, poses); where the motion is not assembled, those that are known before its group."""
+    places = {letter: np.atleast_2d(point.position) for letter, point in motion.points.items()}
+    if not motion.failed.any():
+        return places
+    ranks = {name: k + 1 for k, group in enumerate(motion.structure.groups) for name in group.links}
+    for letter, on in motion.mechanism.carriers.items():
+        link = min(on, key=lambda name: ranks.get(name, 0))
+        pose, p = motion.poses[link], np.ravel(motion.mechanism.geometry.points[link][letter])[0]
+        is_known = (motion.failed > 0) & (motion.failed > ranks.get(link, 0))
+        raw = np.broadcast_to(pose.z.c[0] + pose.u.c[0] * p, motion.failed.shape)
+        places[letter] = np.where(is_known, raw, np.broadcast_to(places[letter], motion.failed.shape))
+    return places
+
+
+def _circles(motion: Motion, links: Sequence[str]) -> Iterator[dict[str, Any]]:
+    """Yield the circles of a group that does not close: about what is known, through where its links are joined."""
+    carriers, geometry = motion.mechanism.carriers, motion.mechanism.geometry.points
+    for name in links:
+        outer = [k for k in geometry[name] if set(carriers[k]) - set(links)]
+        inner = [k for k in geometry[name] if k not in outer and len(carriers[k]) > 1]
+        for known, other in product(outer, inner):
+            radius = abs(complex(np.ravel(geometry[name][other] - geometry[name][known])[0]))
+            yield {"point": known, "radius": radius, "link": name}
 
 
 def _nearest(motion: Motion, drawing: Placement) -> int:
@@ -633,7 +664,13 @@ def _edit(document: str, question: Mapping[str, Any]) -> Reply:
             if letter in drawing.places:
                 place = drawing.places[letter]
                 wanted["drawn"][letter] = [round(place.real, digits) + 0.0, round(place.imag, digits) + 0.0]
-    made = edited(wanted, edit, drawing)
+    if edit.get("do") == "configuration":
+        # the drawing chooses it from now on
+        wanted["drawn"] = chosen_configuration(_shown(reading), str(edit.get("name")), pose)
+        wanted.pop("modes", None)
+        made: Reply = {}
+    else:
+        made = edited(wanted, edit, drawing)
     return {"text": toml_text.changed(document, wanted, syntax_of(document)), "made": made, "problems": []}
 
 
@@ -655,4 +692,25 @@ def _offers(document: str, question: Mapping[str, Any]) -> Reply:
     return {"why": [reason(edit) for edit in edits], "problems": []}
 
 
-QUESTIONS = {"structure": _structure, "motion": _motion, "edit": _edit, "offers": _offers}
+def _shown(reading: Reading) -> DrivenStructure:
+    """Return the structure with the drivers' values that are shown. Raises InvalidInput where there is none."""
+    if reading.structure is None:
+        raise InvalidInput(Problem("", "it is no mechanism yet", "mend what is missing"))
+    return DrivenStructure(reading.structure, _range(reading.structure.mechanism))
+
+
+def _finding(document: str, question: Mapping[str, Any]) -> Reply:
+    """Reply what the package finds of the mechanism."""
+    return OF_MECHANISMS[question["ask"]](_shown(reading_of(document)), question)
+
+
+def _file(document: str, question: Mapping[str, Any]) -> Reply:
+    """Reply what is asked of no document."""
+    return OF_FILES[question["ask"]](question)
+
+
+QUESTIONS = {
+    **{"structure": _structure, "motion": _motion, "edit": _edit, "offers": _offers},
+    **dict.fromkeys(OF_MECHANISMS, _finding),
+    **dict.fromkeys(OF_FILES, _file),
+}

@@ -22,8 +22,8 @@ from compoundkin.dynamics.force_result import ForceResult
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.dynamics.reactions.link_wrench import PAIR, LinkWrench
 from compoundkin.dynamics.reactions.reverse_pass import reverse_pass
-from compoundkin.kinematics.derived.cam_follower import direction_of
 from compoundkin.kinematics.derived.contract import HasQuantities
+from compoundkin.kinematics.derived.guides import direction_of
 from compoundkin.kinematics.extremes import Extreme, Measure, Places, Zeros, extremes, zeros
 from compoundkin.kinematics.extremes.dead_points import moving_driver
 from compoundkin.kinematics.jacobian import moved_together

@@ -64,7 +64,15 @@ export class Canvas {
     this.photo = null;
     this.layers = ["below", "traces", "guides", "shapes", "links", "marks", "pins", "letters", "above"];
     for (const name of this.layers) this[name] = made("g", { class: `layer-${name}` }, svg);
-    new ResizeObserver(() => this.draw()).observe(svg);
+    // who draws above the drawing
+    this.after = [];
+    this.sized = new ResizeObserver(() => this.draw());
+    this.sized.observe(svg);
+  }
+
+  unmount() {
+    this.sized.disconnect();
+    this.svg.replaceChildren();
   }
 
   get size() { return [this.svg.clientWidth || 1, this.svg.clientHeight || 1]; }
@@ -120,6 +128,8 @@ export class Canvas {
   place(letter) {
     if (this.moved[letter]) return this.moved[letter];
     const moving = this.pose === null ? null : this.motion?.points[letter];
+    // what is not known where it cannot be assembled is not drawn
+    if (moving && moving[0][this.pose] === null && !this.isShown(this.pose)) return undefined;
     return moving && moving[0][this.pose] !== null ? [moving[0][this.pose], moving[1][this.pose]] : this.structure?.points[letter];
   }
 
@@ -257,6 +267,11 @@ export class Canvas {
   }
 
   draw() {
+    this.#draw();
+    for (const one of this.after) one();
+  }
+
+  #draw() {
     for (const name of this.layers) if (!["above", "below"].includes(name)) this[name].replaceChildren();
     this.#photograph();
     if (!this.structure) return;

@@ -1,45 +1,17 @@
-// The window: a history of whole documents, the socket that questions go over, the panels. It draws what it is told.
+// The window: a history of whole documents, the wire that questions go over, the panels. It draws what it is told.
 import { Canvas } from "./canvas.js";
+import { element, parts } from "./elements.js";
 import { Gestures } from "./gestures.js";
+import { Results } from "./results.js";
 
-const KEPT = "compoundkin-studio", MOST_KEPT = 200, TYPING = 900, PAUSE = 250;
-const part = (id) => document.getElementById(id);
-const element = (name, text, attributes = {}, ...inner) => {
-  const node = document.createElement(name);
-  if (text) node.textContent = text;
-  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
-  node.append(...inner);
-  return node;
-};
+const MOST_KEPT = 200, TYPING = 900, PAUSE = 250;
 
-class Wire {
-  constructor(token, opened, closed) {
-    this.waiting = new Map();
-    this.count = 0;
-    this.socket = new WebSocket(`ws://${location.host}/talk`);
-    this.socket.addEventListener("open", () => this.socket.send(JSON.stringify({ token })));
-    this.socket.addEventListener("close", closed);
-    this.socket.addEventListener("message", ({ data }) => {
-      const reply = JSON.parse(data);
-      if (reply.id === undefined) { opened(reply); return; }
-      this.waiting.get(reply.id)?.(reply);
-      this.waiting.delete(reply.id);
-    });
-  }
-
-  ask(message) {
-    if (this.socket.readyState !== WebSocket.OPEN) return new Promise(() => {});
-    const id = ++this.count;
-    return new Promise((resolve) => {
-      this.waiting.set(id, resolve);
-      this.socket.send(JSON.stringify({ id, ...message }));
-    });
-  }
-}
-
-class Studio {
-  constructor() {
-    this.canvas = new Canvas(part("canvas"));
+export class Studio {
+  // `root` is the element of the window; `kept` is the history of before and keeps what it is given. A window that is
+  // `alone` hears the keys of its whole page.
+  constructor(root, { wire, kept = {}, alone = false }) {
+    Object.assign(this, { root, part: parts(root), kept, alone, ended: new AbortController() });
+    this.canvas = new Canvas(this.part("canvas"));
     this.gestures = new Gestures(this.canvas, this);
     this.history = [];
     this.place = 0;
@@ -50,13 +22,21 @@ class Studio {
     this.edits = 0;
     this.asking = {};
     this.isFitted = false;
-    const kept = this.#kept(), token = location.hash.slice(1) || kept?.token || "";
-    // the token leaves the address, which people copy
-    history.replaceState(null, "", location.pathname);
-    this.token = token;
-    this.before = kept?.token === token ? kept : null;
-    this.wire = new Wire(token, (reply) => this.#open(reply), () => this.#lost());
+    this.before = kept.before ?? null;
+    this.token = kept.token ?? "";
+    this.results = new Results(root, this);
     this.#listen();
+    this.wire = wire({ opened: (reply) => this.#open(reply), lost: (wasOpen) => this.#lost(wasOpen) });
+  }
+
+  // nothing of it listens or waits any more
+  unmount() {
+    this.halt();
+    clearTimeout(this.pause);
+    this.ended.abort();
+    this.results.unmount();
+    this.canvas.unmount();
+    this.wire.end();
   }
 
   get text() { return this.history[this.place] ?? ""; }
@@ -68,10 +48,18 @@ class Studio {
   // --- the document and its history
 
   #open({ text, mark, file, folder, is_new: isNew }) {
+    const isAgain = this.file !== undefined;
+    this.part("save").disabled = false;
+    if (isAgain) {
+      // the server has come back: what is here goes on, and what is on disk is looked at when it is saved
+      if (this.isLost) this.#notice("");
+      this.isLost = false;
+      return;
+    }
     this.file = file;
-    part("file").textContent = file;
-    part("file").title = folder;
-    document.title = `${file} - studio`;
+    this.part("file").textContent = file;
+    this.part("file").title = folder;
+    if (this.alone) document.title = `${file} - studio`;
     [this.history, this.place, this.mark] = [[text], 0, mark];
     this.saved = isNew ? null : text;
     if (this.before?.history?.length) {
@@ -83,22 +71,23 @@ class Studio {
     this.choose(/^\s*\[links/m.test(this.text) ? "move" : "draw");
   }
 
-  #kept() {
-    try { return JSON.parse(sessionStorage.getItem(KEPT)); } catch { return null; }
-  }
+  get stem() { return (this.file ?? "mechanism").replace(/\.[^.]*$/, ""); }
 
   #keep() {
     const { token, history: texts, place, mark, saved } = this;
-    try { sessionStorage.setItem(KEPT, JSON.stringify({ token, history: texts, place, mark, saved })); } catch { /* too long to be kept */ }
+    this.kept.keep?.({ token, history: texts, place, mark, saved });
   }
 
-  #lost() {
-    this.#notice(`The studio on this machine has ended, or did not let this window in. The drawing is kept here: copy its text, or start it again: compoundkin studio ${this.file ?? ""}`);
-    part("save").disabled = true;
+  #lost(wasOpen) {
+    this.isLost = true;
+    const again = wasOpen ? "It goes on here when that has started again; until then" : "Start it again, or";
+    this.#notice(`The studio on this machine has ended, or did not let this window in. The drawing is kept here. ${again} copy its text or save a copy: compoundkin studio ${this.file ?? ""}`,
+      ["Save a copy", () => { this.results.copy(); this.#lost(wasOpen); }]);
+    this.part("save").disabled = true;
   }
 
   #notice(text, ...choices) {
-    const box = part("notice");
+    const box = this.part("notice");
     box.hidden = !text;
     box.replaceChildren(text ?? "");
     for (const [words, run] of choices) {
@@ -130,6 +119,10 @@ class Studio {
   // an edit follows the one before it, of whose text it is
   edit(edit) {
     const pose = this.canvas.pose;
+    if (pose !== null && !this.canvas.isShown(pose)) {
+      this.say("Not done: it is not assembled at this pose; go to one that is, or press As drawn");
+      return this.queue;
+    }
     this.edits += 1;
     this.queue = this.queue.then(async () => {
       const text = this.text, reply = await this.wire.ask({ document: text, question: { ask: "edit", edit, pose } });
@@ -184,7 +177,7 @@ class Studio {
   // --- the waves
 
   #show(isTyped = false) {
-    if (!isTyped || part("text").value !== this.text) part("text").value = this.text;
+    if (!isTyped || this.part("text").value !== this.text) this.part("text").value = this.text;
     this.#state();
     this.#keep();
     this.halt();
@@ -234,12 +227,14 @@ class Studio {
     this.goTo = null;
     if (!this.isFitted && this.structure.links.length) {
       // a file that is opened is seen whole; one that is drawn keeps its scale
-      if (this.history.length === 1) this.canvas.fit();
+      if (this.history.length === 1 || this.isOpened) this.canvas.fit();
+      this.isOpened = false;
       this.isFitted = true;
     }
     this.#driver();
     this.canvas.draw();
     this.shown = text;
+    this.results.renew();
   }
 
   // what is chosen may be no more
@@ -251,13 +246,13 @@ class Studio {
 
   #state() {
     const isSaved = this.text === this.saved;
-    part("state").textContent = isSaved ? "saved" : "not saved";
-    part("undo").disabled = this.place === 0;
-    part("redo").disabled = this.place >= this.history.length - 1;
+    this.part("state").textContent = isSaved ? "saved" : "not saved";
+    this.part("undo").disabled = this.place === 0;
+    this.part("redo").disabled = this.place >= this.history.length - 1;
   }
 
   #problems(problems) {
-    part("problems").replaceChildren(...problems.map(({ where, what, remedy }) => {
+    this.part("problems").replaceChildren(...problems.map(({ where, what, remedy }) => {
       const line = element("li", where ? `${where}: ${what}` : what);
       if (remedy) line.append(element("span", remedy, { class: "remedy" }));
       return line;
@@ -265,11 +260,11 @@ class Studio {
   }
 
   #panels({ mobility, faults, links, groups, drives, points, moves, pairs }) {
-    const chip = part("chip"), missing = mobility.freedoms - drives.length, isFixed = links.some((one) => one.name === "frame");
+    const chip = this.part("chip"), missing = mobility.freedoms - drives.length, isFixed = links.some((one) => one.name === "frame");
     const less = !isFixed ? "no frame" : missing > 0 ? `${missing} driver${missing > 1 ? "s" : ""} missing` : missing < 0 ? `${-missing} too many` : "";
     chip.textContent = `${mobility.sum}${moves ? ": moves" : less && links.length ? `: ${less}` : ""}`;
     chip.className = `chip ${moves ? "good" : links.length ? "bad" : ""}`;
-    part("faults").replaceChildren(...faults.map(({ what, remedy, fixes }) => {
+    this.part("faults").replaceChildren(...faults.map(({ what, remedy, fixes }) => {
       const line = element("li", what);
       line.append(element("span", remedy, { class: "remedy" }));
       for (const { words, edit } of fixes) {
@@ -279,11 +274,11 @@ class Studio {
       }
       return line;
     }));
-    if (!faults.length) part("faults").append(element("li", "Nothing: it moves.", { class: "good" }));
+    if (!faults.length) this.part("faults").append(element("li", "Nothing: it moves.", { class: "good" }));
     const row = (head, ...inner) => element("div", "", { class: "row" }, head, ...inner);
     const pick = (words, it) => {
       const button = element("button", words);
-      button.addEventListener("click", () => { this.canvas.chosen = it; this.canvas.draw(); part("canvas").focus({ preventScroll: true }); });
+      button.addEventListener("click", () => { this.canvas.chosen = it; this.canvas.draw(); this.part("canvas").focus({ preventScroll: true }); });
       return button;
     };
     const linksOf = (names) => names.filter((name) => name !== "frame").map((name) => pick(name, { link: name }));
@@ -297,38 +292,40 @@ class Studio {
     if (Object.keys(points).length) rows.push(row(element("span", "points"), ...Object.keys(points).map((one) => pick(one, { point: one }))));
     const other = pairs.filter((one) => one.code !== "P" && !one.shapes?.length).map((one) => `${one.name} (${one.kind})`);
     if (other.length) rows.push(row(element("span", `drawn by their points only: ${other.join(", ")}`, { class: "quiet" })));
-    part("structure").replaceChildren(...rows);
+    this.part("structure").replaceChildren(...rows);
   }
 
   #gaps({ gaps }) {
     for (const { why, links } of gaps.slice(0, 3)) {
       const line = element("li", `Not assembled all the way: ${why}`);
       line.append(element("span", links.join(", "), { class: "remedy" }));
-      part("faults").append(line);
+      this.part("faults").append(line);
     }
   }
 
   // --- the driver
 
   #driver() {
-    const { motion, canvas } = this, box = part("drive");
+    const { motion, canvas } = this, box = this.part("drive");
     box.hidden = !motion?.poses;
     if (box.hidden) return;
     const at = canvas.pose ?? motion.start, [[name, { values, unit }]] = Object.entries(motion.drives);
-    part("pose").max = motion.poses - 1;
-    part("pose").value = at;
-    part("pose").setAttribute("aria-label", `Driver ${name}`);
+    this.part("pose").max = motion.poses - 1;
+    this.part("pose").value = at;
+    this.part("pose").setAttribute("aria-label", `Driver ${name}`);
     const shown = `${Number(values[at].toPrecision(5))}${unit === "°" ? unit : ` ${unit}`}`;
-    part("pose").setAttribute("aria-valuetext", shown);
-    part("value").textContent = canvas.pose === null ? "as drawn" : shown;
+    this.part("pose").setAttribute("aria-valuetext", shown);
+    const gap = canvas.pose !== null && !canvas.isShown(at) ? motion.gaps.find((one) => one.from <= at && at <= one.to) : null;
+    this.part("value").textContent = canvas.pose === null ? "as drawn" : shown;
+    this.part("why").textContent = gap ? `Not assembled: ${gap.why}. What is known is drawn; the circles do not meet.` : "";
   }
 
   pose(k) {
-    if (!this.canvas.isShown(k)) return false;
     this.canvas.pose = k;
     this.canvas.draw();
     this.#driver();
-    return true;
+    this.results.posed();
+    return this.canvas.isShown(k);
   }
 
   // the pose at which a point of the driven link is nearest to a place
@@ -344,7 +341,7 @@ class Studio {
 
   play() {
     if (!this.motion?.poses || this.playing) { this.halt(); return; }
-    part("play").textContent = "Pause";
+    this.part("play").textContent = "Pause";
     let k = this.canvas.pose ?? this.motion.start, by = 1;
     const last = this.motion.poses - 1;
     const [xs, ys] = Object.values(this.motion.points).at(-1);
@@ -353,7 +350,7 @@ class Studio {
       let to = k + by;
       if (isRound) to = (to + last) % last;
       else if (to < 0 || to > last || !this.canvas.isShown(to)) { by = -by; to = k + by; }
-      if (this.pose(to)) k = to;
+      if (this.canvas.isShown(to) && this.pose(to)) k = to;
       this.playing = requestAnimationFrame(next);
     };
     this.playing = requestAnimationFrame(next);
@@ -362,7 +359,7 @@ class Studio {
   halt() {
     cancelAnimationFrame(this.playing);
     this.playing = null;
-    part("play").textContent = "Play";
+    this.part("play").textContent = "Play";
   }
 
   // --- what gestures ask, and keys
@@ -370,45 +367,48 @@ class Studio {
   linksAt(letter) { return this.structure?.links.filter((one) => one.points.includes(letter)).map((one) => one.name) ?? []; }
   driveAt(letter) { return this.structure?.drives.find((one) => one.points[0] === letter && !this.canvas.cylinder(one.name))?.name; }
   slideAt(letter) { return this.structure?.pairs.find((one) => one.code === "P" && !one.is_cylinder && one.points[0] === letter)?.name; }
-  say(text) { part("hint").textContent = text; }
+  say(text) { this.part("hint").textContent = text; }
 
   choose(tool) {
     this.gestures.choose(tool);
-    for (const one of ["draw", "move", "cylinder"]) part(`tool-${one}`).setAttribute("aria-pressed", String(one === tool));
+    for (const one of ["draw", "move", "cylinder"]) this.part(`tool-${one}`).setAttribute("aria-pressed", String(one === tool));
   }
 
   #listen() {
-    const on = (id, run) => part(id).addEventListener("click", run);
+    const on = (id, run) => this.part(id).addEventListener("click", run);
     on("undo", () => this.step(-1));
     on("redo", () => this.step(1));
     on("save", () => this.save());
+    on("open", () => this.results.open());
+    on("copy", () => this.results.copy());
+    on("export", () => this.results.exports());
     on("fit", () => this.canvas.fit());
     on("play", () => this.play());
     on("home", () => { this.halt(); this.canvas.pose = null; this.canvas.draw(); this.#driver(); });
     on("tool-draw", () => this.choose("draw"));
     on("tool-move", () => this.choose("move"));
     on("tool-cylinder", () => this.choose("cylinder"));
-    on("add-photo", () => part("photo").click());
-    part("photo").addEventListener("change", ({ target }) => { this.gestures.photograph(target.files[0]); target.value = ""; });
+    on("add-photo", () => this.part("photo").click());
+    this.part("photo").addEventListener("change", ({ target }) => { this.gestures.photograph(target.files[0]); target.value = ""; });
     for (const what of ["ground", "driver", "slide", "gear", "cam", "lock", "delete"]) {
       // what is under the pointer is the button
       on(`do-${what}`, () => { this.canvas.over = null; this.gestures.act(what); });
     }
-    part("pose").addEventListener("input", (event) => { this.halt(); this.pose(Number(event.target.value)); });
-    let pause = 0;
-    part("text").addEventListener("input", (event) => {
-      clearTimeout(pause);
-      pause = setTimeout(() => this.put(event.target.value, true), PAUSE);
+    this.part("pose").addEventListener("input", (event) => { this.halt(); this.pose(Number(event.target.value)); });
+    this.part("text").addEventListener("input", (event) => {
+      clearTimeout(this.pause);
+      this.pause = setTimeout(() => this.put(event.target.value, true), PAUSE);
     });
-    document.addEventListener("keydown", (event) => this.#key(event));
-    addEventListener("beforeunload", (event) => { if (this.text !== this.saved && this.history.length > 1) event.preventDefault(); });
+    const { signal } = this.ended;
+    (this.alone ? document : this.root).addEventListener("keydown", (event) => this.#key(event), { signal });
+    if (this.alone) addEventListener("beforeunload", (event) => { if (this.text !== this.saved && this.history.length > 1) event.preventDefault(); }, { signal });
   }
 
   #key(event) {
     const key = event.key.toLowerCase(), isCommand = event.ctrlKey || event.metaKey;
-    const isText = event.target.matches("textarea"), isButton = event.target.matches("button, input");
+    const isText = event.target.matches("textarea, input:not([type=range]):not([type=radio]), select"), isButton = event.target.matches("button, input, summary");
     if (event.target.closest("dialog")) return;
-    if (!isText && !isCommand && !(isButton && key === "enter") && event.target.type !== "number" && this.gestures.key(event)) { event.preventDefault(); return; }
+    if (!isText && !isCommand && !(isButton && key === "enter") && this.gestures.key(event)) { event.preventDefault(); return; }
     if (isCommand && key === "s") this.save();
     else if (isCommand && key === "z") this.step(event.shiftKey ? 1 : -1);
     else if (isCommand && key === "y") this.step(1);
@@ -439,5 +439,3 @@ class Studio {
     event.preventDefault();
   }
 }
-
-window.studio = new Studio();

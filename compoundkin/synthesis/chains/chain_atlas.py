@@ -1,13 +1,14 @@
 """The shipped lists of chains and trusses; inversions and Assur groups from them.
 
 A chain is known by its place in the list of chains with as many links and the same mobility: "8-link chain 7".
-The lists are made by `compoundkin.synthesis.chains.shipped_lists`; their order is part of the names and stays.
+The list is made by ``python -m compoundkin.synthesis.chains.chain_atlas``, in a few seconds; its order is part of the
+names and stays.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -221,3 +222,38 @@ def _generated(links: int, mobility: int, patient: bool) -> tuple[Chain, ...]:
 def _numbers() -> dict[tuple[int, str], int]:
     # the lists hold canonical forms, so that their own numbering gives the code
     return {(m, code): k for (_, m), codes in _codes(_lines()).items() for k, code in enumerate(codes, 1)}
+
+
+# --- the list is made --------------------------------------------------------------------------------------
+
+MOBILITIES = (0, 1, 2, 3)
+# A loop of n links has the mobility n - 3.
+_LINKS_OF_RIGID_LOOP = 3
+HEADING = (
+    "Kinematic chains of revolute pairs and, with mobility 0, Baranov trusses, each once: links, mobility, graph6.",
+    "Made by python -m compoundkin.synthesis.chains.chain_atlas. The order numbers the chains: never change it.",
+)
+
+
+def list_lines(most_links: int = MOST_LINKS) -> Iterator[str]:
+    """Yield the lines of the list, by mobility, then by links.
+
+    >>> list(list_lines(most_links=4))[2:6]
+    ['3 0 Bw', '4 1 C]']
+    """
+    yield from (f"{COMMENT} {text}" for text in HEADING)
+    for mobility in MOBILITIES:
+        for links in range(mobility + _LINKS_OF_RIGID_LOOP, most_links + 1):
+            for chain in chains_of(links, mobility, bridged=True):
+                yield f"{links} {mobility} {chain.code}"
+
+
+def write_list(path: Path = FILE) -> int:
+    """Write the list to a file; the number of lines written."""
+    text = [*list_lines()]
+    path.write_text("\n".join(text) + "\n", encoding="ascii")
+    return len(text)
+
+
+if __name__ == "__main__":
+    print(f"{write_list()} lines written to {FILE}")

@@ -6,14 +6,13 @@ import networkx as nx
 import pytest
 
 from compoundkin.synthesis.chains import Chain, assur_groups, chains, inversions, number_of, trusses
-from compoundkin.synthesis.chains.chain_atlas import FILE, MOST_LINKS, read_lists
-from compoundkin.synthesis.chains.shipped_lists import MOBILITIES, lines, make
+from compoundkin.synthesis.chains.chain_atlas import FILE, MOBILITIES, MOST_LINKS, list_lines, read_lists, write_list
 from tests.synthesis.chains.counts import COUNTS
 
 
 def test_the_shipped_list_is_what_is_made(tmp_path):
     copy = tmp_path / "chains.txt"
-    assert make(copy) == len(list(lines()))
+    assert write_list(copy) == len(list(list_lines()))
     assert copy.read_text(encoding="ascii") == FILE.read_text(encoding="ascii")
 
 

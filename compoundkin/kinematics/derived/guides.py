@@ -1,4 +1,7 @@
-"""The follower of a cam: which link it is, how it is guided, where its contact can move, and its pressure angle."""
+"""What guides do: the follower of a cam with its pressure angle, and the Coriolis part of what slides along a guide.
+
+Which link a follower is, how it is guided, and where its contact can move.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import as_series
 from compoundkin.kinematics.derived.contract import HasQuantities, Lack
 from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.contract import guided_point
 from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
 
 # Slower than this part of the fastest, a velocity has no direction but that of rounding.
@@ -84,3 +88,30 @@ def velocity_at(pose: Pose, point: Number) -> Number:
     z, u = pose.z, pose.u
     origin, rate = (z.c[1] if len(z.c) > 1 else 0j), (u.turning().c[0] if len(u.c) > 1 else 0.0)
     return origin + 1j * rate * (point - z.c[0])
+
+
+def coriolis(motion: HasQuantities, name: str) -> Number:
+    """Return the Coriolis acceleration of what slides along a guide, a planar vector.
+
+    Twice the vector product of the guide's angular velocity and the velocity along it. It is a part of the acceleration
+    of the point that slides, beside that of the guide's point below it and the one along the guide. Source: J. L.
+    Meriam and L. G. Kraige, Engineering Mechanics: Dynamics, section 5/7.
+    """
+    motion.grid.require(1)
+    pair = motion.solving_order.pairs[name]
+    guide, sliding = (motion.poses[member] for member in pair.members[:2])
+    place = sliding.at(guided_point(pair, motion.inputs.ends[name])).c[0]
+    passing = velocity_at(sliding, place) - velocity_at(guide, place)
+    turning = guide.u.turning().c[0] if len(guide.u.c) > 1 else 0.0
+    return motion.grid.known(2j * turning * passing)
+
+
+def no_coriolis(motion: HasQuantities, name: str) -> Lack | None:
+    """Return why a pair has no Coriolis acceleration."""
+    order = motion.solving_order
+    pair = order.pairs[name]
+    if guided_point(pair, motion.inputs.ends[name]) is None:
+        return Lack(f"no point of a {pair.title} slides along a guide")
+    if pair.members[0] in order.structure.translating_links:
+        return Lack(f"its guide on {pair.members[0]!r} does not turn")
+    return None

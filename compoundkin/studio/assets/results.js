@@ -1,0 +1,287 @@
+// What was found of the mechanism: plots, reports, configurations, circuits; velocities and instant centres on the
+// canvas; opening and exporting. Each is asked when somebody looks at it, after the motion is there.
+import { element, fragment, labelled, parts } from "./elements.js";
+
+const SVG = "http://www.w3.org/2000/svg";
+const LONGEST = 110, DOT = 4; // pixels: the longest velocity, the dot of a centre
+const COLOUR = { centres: "var(--bad)", velocities: "var(--good)" };
+
+const drawn = (name, attributes, parent) => {
+  const node = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+  parent.append(node);
+  return node;
+};
+
+const offered = (name, content, type) => {
+  const address = URL.createObjectURL(new Blob([content], { type }));
+  const link = element("a", "", { href: address, download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(address), 1000);
+};
+
+export class Results {
+  constructor(root, studio) {
+    Object.assign(this, { studio, part: parts(root), shown: {}, chosen: [], words: null });
+    this.layer = drawn("g", { class: "layer-found" }, studio.canvas.svg);
+    this.#build();
+    studio.canvas.after.push(() => this.#draw());
+  }
+
+  // --- panels that ask when they are open
+
+  #build() {
+    const box = this.part("results");
+    this.panels = {};
+    for (const [ask, title] of [["plots", "Plots"], ["configurations", "Configurations"], ["circuits", "Circuits"], ["results", "Report"]]) {
+      const body = element("div", "", { class: "found" });
+      const panel = element("details", "", { id: `results-${ask}` }, element("summary", title), body);
+      panel.addEventListener("toggle", () => { if (panel.open) this.#ask(ask); });
+      this.panels[ask] = { panel, body };
+      box.append(panel);
+    }
+    const switches = element("div", "", { class: "bar switches", role: "group", "aria-label": "On the canvas" });
+    this.switches = {};
+    for (const [name, title] of [["paths", "Paths"], ["velocities", "Velocities"], ["centres", "Instant centres"]]) {
+      const button = element("button", title, { id: `show-${name}`, "aria-pressed": String(name === "paths") });
+      button.addEventListener("click", () => this.#toggle(name, button));
+      this.switches[name] = button;
+      switches.append(button);
+    }
+    box.prepend(switches);
+  }
+
+  get isMoving() { return Boolean(this.studio.motion?.poses); }
+
+  // the document is another: what is looked at is asked anew; the rest is forgotten
+  renew() {
+    this.shown = {};
+    this.overlay = null;
+    this.part("results-box").hidden = !this.studio.structure?.links.length;
+    for (const [ask, { panel, body }] of Object.entries(this.panels)) {
+      if (panel.open) { body.setAttribute("aria-busy", "true"); this.#ask(ask); } else body.replaceChildren();
+    }
+    if (this.isOn("velocities") || this.isOn("centres")) this.#overlays();
+  }
+
+  // another pose is shown: configurations are those of its driver
+  posed() {
+    if (this.panels.configurations.panel.open) {
+      clearTimeout(this.posing);
+      this.posing = setTimeout(() => { delete this.shown.configurations; this.#ask("configurations"); }, 250);
+    }
+  }
+
+  unmount() {
+    clearTimeout(this.posing);
+    this.layer.remove();
+  }
+
+  async #reply(ask, more = {}) {
+    const text = this.studio.text, reply = await this.studio.wire.ask({ document: text, question: { ask, ...more } });
+    return text === this.studio.text && !reply.is_dropped ? reply : null;
+  }
+
+  async #ask(ask) {
+    const { body, panel } = this.panels[ask], { text } = this.studio;
+    if (this.shown[ask] === text) return;
+    if (ask === "plots" && !this.words) { await this.#names(); if (!panel.open) return; }
+    if (ask === "plots" && !this.chosen.length) { body.replaceChildren(this.#picker()); this.shown[ask] = text; return; }
+    body.setAttribute("aria-busy", "true");
+    if (!body.childElementCount) body.replaceChildren(element("p", "Working …", { class: "quiet" }));
+    const more = ask === "plots" ? { names: this.chosen } : ask === "configurations" ? { pose: this.studio.canvas.pose } : {};
+    const reply = await this.#reply(ask, more);
+    if (!reply) return;
+    body.removeAttribute("aria-busy");
+    this.shown[ask] = text;
+    const problems = (reply.problems ?? []).map(({ what, remedy }) => element("p", remedy ? `${what}: ${remedy}` : what, { class: "remedy" }));
+    const made = problems.length ? [] : this[`show_${ask}`](reply);
+    body.replaceChildren(...(ask === "plots" ? [this.#picker()] : []), ...problems, ...made);
+  }
+
+  async #names() {
+    const reply = await this.#reply("results");
+    if (!reply?.quantities) return;
+    this.words = reply.quantities;
+    if (!this.chosen.length) this.chosen = reply.outputs.slice(0, 1);
+  }
+
+  // what is plotted, each a button that takes it out, and a field for one more
+  #picker() {
+    const known = element("datalist", "", { id: "quantities" }, ...(this.words ?? []).map((one) => element("option", "", { value: one })));
+    const field = element("input", "", { id: "quantity", list: "quantities", autocomplete: "off", placeholder: this.words?.[0] ?? "" });
+    const again = () => { delete this.shown.plots; this.#ask("plots"); };
+    field.addEventListener("change", () => {
+      const name = field.value.trim();
+      if (name && !this.chosen.includes(name)) { this.chosen.push(name); again(); }
+    });
+    const taken = this.chosen.map((name) => {
+      const button = element("button", `${name} ×`, { "aria-label": `Take out ${name}` });
+      button.addEventListener("click", () => { this.chosen = this.chosen.filter((one) => one !== name); again(); });
+      return button;
+    });
+    return element("div", "", { class: "picker" }, labelled("Quantity", field), known, ...taken);
+  }
+
+  show_plots({ picture }) {
+    return [element("img", "", { src: picture, alt: `Plot of ${this.chosen.join(", ")}`, class: "paper" })];
+  }
+
+  show_circuits({ picture, html }) {
+    return [element("img", "", { src: picture, alt: "Circuits over the driver", class: "paper" }), fragment(html)];
+  }
+
+  show_configurations({ configurations, words }) {
+    const all = configurations.map(({ name, picture, is_shown: isShown }) => {
+      const button = element("button", "", { class: "thumbnail", "aria-pressed": String(isShown) },
+        element("img", "", { src: picture, alt: "", class: "paper" }), element("span", name));
+      button.addEventListener("click", () => { if (!isShown) this.studio.edit({ do: "configuration", name }); });
+      return button;
+    });
+    return [element("p", words, { class: "quiet" }), element("div", "", { class: "thumbnails" }, ...all)];
+  }
+
+  show_results({ sections, verdict, quantities }) {
+    this.words = quantities;
+    return [...(verdict ? [element("p", verdict)] : []), ...sections.map(({ key, title, html }) =>
+      element("details", "", { "data-section": key }, element("summary", title), fragment(html)))];
+  }
+
+  // --- on the canvas
+
+  isOn(name) { return this.switches[name].getAttribute("aria-pressed") === "true"; }
+
+  #toggle(name, button) {
+    button.setAttribute("aria-pressed", String(!this.isOn(name)));
+    if (name === "paths") this.studio.canvas.svg.classList.toggle("without-paths", !this.isOn("paths"));
+    else if (this.isOn(name) && !this.overlay) this.#overlays();
+    this.#draw();
+  }
+
+  async #overlays() {
+    if (!this.isMoving) return;
+    const reply = await this.#reply("overlays");
+    if (!reply) return;
+    this.overlay = reply.problems?.length ? null : reply;
+    if (reply.problems?.length) this.studio.say(reply.problems[0].what);
+    this.#draw();
+  }
+
+  #draw() {
+    this.layer.replaceChildren();
+    const { canvas } = this.studio, k = canvas.pose ?? this.studio.motion?.start;
+    this.#missed(canvas);
+    if (!this.overlay || !this.isMoving || k === undefined) return;
+    if (this.isOn("velocities")) {
+      for (const [letter, [vx, vy]] of Object.entries(this.overlay.velocities)) {
+        const at = canvas.at(letter), v = [vx[k], vy[k]];
+        if (!at || v.includes(null) || Math.hypot(...v) < 1e-6) continue;
+        const tip = [at[0] + LONGEST * v[0], at[1] - LONGEST * v[1]], turned = Math.atan2(-v[1], v[0]);
+        const barb = (by) => `${tip[0] - 9 * Math.cos(turned + by)} ${tip[1] - 9 * Math.sin(turned + by)}`;
+        drawn("path", { d: `M${at.join(" ")}L${tip.join(" ")}M${barb(0.4)}L${tip.join(" ")}L${barb(-0.4)}`, class: "velocity", stroke: COLOUR.velocities }, this.layer);
+      }
+    }
+    if (this.isOn("centres")) {
+      for (const [links, [xs, ys]] of Object.entries(this.overlay.centres)) {
+        if (xs[k] === null || ys[k] === null) continue;
+        const at = canvas.screen([xs[k], ys[k]]), [wide, high] = canvas.size;
+        if (at[0] < 0 || at[1] < 0 || at[0] > wide || at[1] > high) continue;
+        const isPin = Object.keys(canvas.structure.points).map((one) => canvas.at(one)).some((one) => one && Math.hypot(one[0] - at[0], one[1] - at[1]) < 2);
+        const dot = drawn("circle", { cx: at[0], cy: at[1], r: DOT, class: "centre", fill: COLOUR.centres }, this.layer);
+        drawn("title", {}, dot).textContent = `Instant centre of ${links}`;
+        if (!isPin) drawn("text", { x: at[0] + 7, y: at[1] + 14, class: "centre-name" }, this.layer).textContent = links.split(", ").join("–");
+      }
+    }
+  }
+
+  // where it cannot be assembled: circles that do not meet
+  #missed(canvas) {
+    const gap = canvas.pose !== null && this.studio.motion?.gaps?.find((one) => one.from <= canvas.pose && canvas.pose <= one.to);
+    for (const { point, radius } of gap?.circles ?? []) {
+      const at = canvas.at(point);
+      if (at) drawn("circle", { cx: at[0], cy: at[1], r: radius * canvas.view.scale, class: "missed" }, this.layer);
+    }
+  }
+
+  // --- files
+
+  async dialogs() {
+    const { forms, catalog } = await this.studio.wire.ask({ document: "", question: { ask: "forms" } });
+    this.forms = forms ?? [];
+    this.catalog = catalog ?? {};
+  }
+
+  async open() {
+    if (!this.forms) await this.dialogs();
+    const known = element("datalist", "", { id: "catalog" }, ...Object.entries(this.catalog).map(([name, title]) => element("option", title, { value: name })));
+    const field = element("input", "", { id: "open-name", list: "catalog", autocomplete: "off", placeholder: "six-bar" });
+    const file = element("input", "", { id: "open-file", type: "file" });
+    const ask = async (question) => {
+      const reply = await this.studio.wire.ask({ document: "", question: { ask: "open", ...question } });
+      this.#opened(reply, question.name);
+    };
+    file.addEventListener("change", async () => {
+      const [given] = file.files;
+      if (!given) return;
+      const bytes = new Uint8Array(await given.arrayBuffer());
+      if (/\.(toml|json)$/i.test(given.name)) this.#opened({ text: new TextDecoder().decode(bytes), notes: [] }, given.name);
+      else await ask({ name: given.name, content: btoa(Array.from(bytes, (one) => String.fromCharCode(one)).join("")) });
+    });
+    this.#dialog("Open", [
+      element("p", "What is drawn now stays in the history: Undo brings it back.", { class: "quiet" }),
+      labelled("A name of the catalog, lengths such as four-bar:60,20,50,40, or a link of another program", field), known,
+      labelled("Or a file, of compoundkin or of another program", file),
+    ], "Open", () => ask({ name: field.value }));
+  }
+
+  #opened({ text, notes, problems }, name) {
+    if (problems?.length) { this.#said(problems.map(({ what, remedy }) => (remedy ? `${what}: ${remedy}` : what)).join("; ")); return; }
+    this.dialog?.close();
+    this.chosen = [];
+    this.words = null;
+    [this.studio.isFitted, this.studio.isOpened] = [false, true];
+    this.studio.put(text);
+    this.studio.say([`Opened ${name}`, ...(notes ?? [])].join("; "));
+  }
+
+  async exports() {
+    if (!this.forms) await this.dialogs();
+    const form = element("select", "", { id: "export-form" }, ...this.forms.map(({ name, title, suffix }) => element("option", `${name}: ${title} (${suffix})`, { value: name })));
+    this.#dialog("Export", [labelled("As what", form)], "Download", async () => {
+      this.#said("Working …");
+      const stem = this.studio.stem, reply = await this.#reply("export", { to: form.value, name: stem });
+      if (!reply) return;
+      if (reply.problems?.length) { this.#said(reply.problems.map(({ where, what, remedy }) => [where, what, remedy].filter(Boolean).join(": ")).join("; ")); return; }
+      offered(stem + reply.suffix, Uint8Array.from(atob(reply.content), (one) => one.charCodeAt(0)), "application/octet-stream");
+      this.#said([`Wrote ${stem}${reply.suffix}`, ...reply.notes].join("; "));
+    });
+  }
+
+  copy() {
+    const { text, stem } = this.studio;
+    offered(`${stem}${text.trimStart().startsWith("{") ? ".json" : ".toml"}`, text, "text/plain");
+    this.studio.say("A copy is in the browser's downloads");
+  }
+
+  #dialog(title, inner, words, run) {
+    this.dialog?.remove();
+    const said = element("p", "", { class: "said", role: "status" }), go = element("button", words, { class: "go" });
+    const close = element("button", "Close");
+    const heading = element("h2", title, { id: "dialog-title" });
+    const dialog = element("dialog", "", { "aria-labelledby": "dialog-title" }, heading, ...inner, said, element("div", "", { class: "bar" }, go, close));
+    go.addEventListener("click", run);
+    close.addEventListener("click", () => dialog.close());
+    dialog.addEventListener("keydown", (event) => {
+      event.stopPropagation();
+      if (event.key === "Enter" && event.target.matches("input:not([type=file])")) run();
+    });
+    dialog.addEventListener("close", () => dialog.remove());
+    Object.assign(this, { dialog, said });
+    this.part("canvas").closest(".studio").append(dialog);
+    dialog.showModal();
+  }
+
+  #said(text) { if (this.said) this.said.textContent = text; }
+}

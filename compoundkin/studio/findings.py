@@ -1,0 +1,300 @@
+"""The third wave: what the package finds of a mechanism, in its own reports, plots, pictures and files.
+
+Nothing is computed or drawn in a second way here. Also what another program's file, a link, a name of the catalog or
+the lengths of a linkage become as a document.
+"""
+
+from __future__ import annotations
+
+import re
+from base64 import b64decode, b64encode
+from binascii import Error
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import floor, isfinite, log10
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.base.suffixes import SUFFIXES, suffix_for
+from compoundkin.base.suffixes import Kind as FileKind
+from compoundkin.kinematics import Motion, solve
+from compoundkin.model.attributes import TABULATED, VELOCITY, Kind
+from compoundkin.model.geometry import FRAME
+from compoundkin.structure import Structure
+
+Reply: TypeAlias = dict[str, Any]
+
+# So many configurations have a picture; of more links than these instant centres are not shown.
+MOST_PICTURES, MOST_CENTRES = 24, 12
+# So many plots are drawn at once.
+MOST_PLOTS = 8
+# Numbers on the canvas are told with so many digits of the mechanism's size.
+DIGITS = 6
+# A drawing that chooses a configuration keeps dimensions to so many digits of its size.
+EXACT = 12
+# Of the quantities of a motion, those up to accelerations.
+ORDERS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class DrivenStructure:
+    """A structure, and the values of its drivers that the window shows; None for their own ranges."""
+
+    structure: Structure
+    values: Mapping[str, Number] | None
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The motion with accelerations. Raises InvalidInput where there is none, and what `solve` does."""
+        if self.structure.faults or not self.structure.mechanism.drives:
+            raise InvalidInput(Problem("", "it does not move yet", "mend what is missing"))
+        return solve(self.structure, self.values)
+
+    def at(self, pose: object) -> dict[str, float]:
+        """Return the drivers' values at a pose of the window, at the first assembled one without it."""
+        drives, good = self.motion.inputs.drives, np.flatnonzero(self.motion.failed[0] == 0)
+        if not good.size:
+            raise InvalidInput(Problem("", "it cannot be assembled", "mend its dimensions"))
+        k = pose if isinstance(pose, int) and 0 <= pose < self.motion.failed.shape[1] else int(good[0])
+        return {name: float(np.broadcast_to(v[0], self.motion.failed.shape)[0, k]) for name, v in drives.items()}
+
+
+# --- reports ------------------------------------------------------------------------------------------------
+
+
+def results(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
+    """Reply the report, section by section as plain HTML, and the names of what can be plotted."""
+    from compoundkin.view.page.html_blocks import plain_block
+    from compoundkin.view.report import report
+
+    found = report(shown.structure.mechanism)
+    sections = [
+        {
+            "key": one.key,
+            "title": one.title or "About",
+            "html": "\n".join(_unstyled(plain_block(b)) for b in one.blocks),
+        }
+        for one in found.sections
+    ]
+    mechanism = shown.structure.mechanism
+    moves = not shown.structure.faults and bool(mechanism.drives)
+    return {
+        "sections": sections,
+        "quantities": list(_quantities(shown.motion)) if moves else [],
+        "outputs": list(mechanism.outputs) if moves else [],
+        "verdict": found.outcome.verdict,
+        "problems": [],
+    }
+
+
+_NUMBER, _STYLE = re.compile(r' style="text-align:right[^"]*"'), re.compile(r' style="[^"]*"')
+
+
+def _unstyled(html: str) -> str:
+    """Return HTML with classes in place of styles, which the page's policy forbids; texts have no quotes left."""
+    return _STYLE.sub("", _NUMBER.sub(' class="number"', html))
+
+
+def _quantities(motion: Motion) -> Iterator[str]:
+    """Yield the names of positions, velocities and accelerations of all that moves; pins that are points are these."""
+    carriers = motion.mechanism.carriers
+    owners: Mapping[Kind, Any] = {"points": motion.points, "links": motion.links, "pairs": motion.pairs}
+    for kind, own in owners.items():
+        for name in own:
+            if FRAME in (name, *carriers.get(name, ())) or (kind == "pairs" and name in carriers):
+                continue
+            yield from (f"{name}.{word}" for word in TABULATED[kind][:ORDERS])
+
+
+def plots(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
+    """Reply a plot of quantities, an SVG picture."""
+    from compoundkin.view.plot import plot
+
+    names = question.get("names")
+    if not isinstance(names, list) or not all(isinstance(one, str) for one in names) or len(names) > MOST_PLOTS:
+        raise InvalidInput(Problem("names", "these are no names of quantities", f"give at most {MOST_PLOTS}"))
+    return {"picture": _image(plot(shown.motion, *names).content("svg")), "problems": []}
+
+
+def _image(svg: bytes | str) -> str:
+    """Return an SVG picture as the address of an image: its styles are then its own."""
+    content = svg.encode("utf-8") if isinstance(svg, str) else svg
+    return f"data:image/svg+xml;base64,{b64encode(content).decode('ascii')}"
+
+
+def every_configuration(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
+    """Reply all configurations at the pose that is shown, each with its picture and whether it is the one shown."""
+    from compoundkin.configurations.enumeration import configurations
+    from compoundkin.view.sketch import draw
+
+    at = shown.at(question.get("pose"))
+    found = configurations(shown.structure, at)
+    now = solve(shown.structure, at, order=0)
+    size, told = shown.structure.mechanism.geometry.size, []
+    for one in list(found)[:MOST_PICTURES]:
+        motion = solve(shown.structure, at, order=0, modes=one)
+        apart = max(abs(complex(np.ravel(now.points[k].position)[0]) - place) for k, place in one.points.items())
+        picture = _image(draw(motion, labels=False).svg)
+        told.append({"name": one.name, "picture": picture, "is_shown": bool(apart <= 1e-6 * size)})
+    return {"configurations": told, "words": found.count_in_words, "problems": []}
+
+
+def chosen_configuration(shown: DrivenStructure, name: str, pose: object) -> dict[str, list[float]]:
+    """Return where all points are in a configuration at the pose that is shown. Raises UnknownName."""
+    from compoundkin.configurations.enumeration import configurations
+
+    found = {one.name: one for one in configurations(shown.structure, shown.at(pose))}
+    if name not in found:
+        raise UnknownName(Problem(name, "there is no such configuration here", suggestion(name, list(found))))
+    digits = EXACT - floor(log10(shown.structure.mechanism.geometry.size))
+    return {
+        letter: [round(place.real, digits) + 0.0, round(place.imag, digits) + 0.0]
+        for letter, place in found[name].points.items()
+    }
+
+
+def every_circuit(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
+    """Reply all circuits of a driver: a plot over its range, and the tables of the report."""
+    from compoundkin.configurations.circuit_search import circuits
+    from compoundkin.view.page.html_blocks import plain_sections
+    from compoundkin.view.plot import circuits as circuits_plot
+    from compoundkin.view.report.configurations_section import circuits_report
+
+    at, drivers = shown.at(question.get("pose")), list(shown.motion.drives)
+    others = {name: value for name, value in at.items() if name != drivers[0]}
+    found = circuits(shown.structure, drivers[0], others)
+    html = "\n".join(map(_unstyled, plain_sections(circuits_report(found).sections)))
+    return {"picture": _image(circuits_plot(found).content("svg")), "html": html, "problems": []}
+
+
+def overlays(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
+    """Reply what the canvas can show at each pose beside the drawing: velocities of points, instant centres."""
+    from compoundkin.analysis.centres import instant_centres
+
+    motion = shown.motion
+    fine = DIGITS - floor(log10(motion.size))
+    velocities = {
+        k: np.broadcast_to(getattr(point, VELOCITY), motion.failed.shape)[0] for k, point in motion.points.items()
+    }
+    moving = {k: v for k, v in velocities.items() if FRAME not in motion.mechanism.carriers[k]}
+    fastest = max((float(np.nanmax(np.abs(v), initial=0.0)) for v in moving.values()), default=0.0)
+    found: dict[str, Any] = {}
+    if len(motion.mechanism.links) <= MOST_CENTRES:
+        centres = instant_centres(motion)
+        for pair in centres:
+            place = np.broadcast_to(centres[pair].point, motion.failed.shape)[0]
+            found[", ".join(pair)] = [_row(place.real, fine), _row(place.imag, fine)]
+    return {
+        "velocities": {k: [_row(v.real / fastest, DIGITS), _row(v.imag / fastest, DIGITS)] for k, v in moving.items()}
+        if fastest
+        else {},
+        "centres": found,
+        "problems": [],
+    }
+
+
+def _row(values: Number, digits: int) -> list[float | None]:
+    rounded = np.round(np.asarray(values, dtype=float), digits)
+    return [float(one) if isfinite(one) else None for one in np.ravel(rounded)]
+
+
+# --- files of others ----------------------------------------------------------------------------------------
+
+TIKZ = "tikz"
+# What is written besides files of other programs, in order: its kind in the table of suffixes, and what it is.
+OWN_FORMS: Mapping[str, tuple[FileKind, str]] = {
+    "html": ("report", "report with the moving sketch, a page to send"),
+    "markdown": ("report", "report"),
+    "svg": ("picture", "picture"),
+    TIKZ: ("picture", "picture for LaTeX"),
+    **dict.fromkeys(dict.fromkeys(SUFFIXES["program"].values()), ("program", "function")),
+}
+# Of formats that are a line of text.
+PLAIN = suffix_for("report", "text")
+
+
+def forms(question: Mapping[str, Any]) -> Reply:
+    """Reply what a mechanism can be exported as, and the names of the catalog with titles."""
+    from compoundkin.files.exchange.known_formats import writable_formats
+    from compoundkin.files.shipped_mechanisms import titles
+
+    others = {name: (one.title, one.suffix or PLAIN) for name, one in writable_formats().items()}
+    known = {**{name: (title, suffix_for(kind, name)) for name, (kind, title) in OWN_FORMS.items()}, **others}
+    return {
+        "forms": [{"name": name, "title": title, "suffix": suffix} for name, (title, suffix) in known.items()],
+        "catalog": titles(),
+        "problems": [],
+    }
+
+
+def exported(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
+    """Reply a mechanism in another form: its bytes in base 64, the suffix of the file, and what is not converted."""
+    from compoundkin.files.exchange.known_formats import writable_formats, write
+    from compoundkin.programs.compiled_path import compile, recorded_outputs
+    from compoundkin.view.report import report
+    from compoundkin.view.sketch import draw
+
+    form, notes = str(question.get("to")), list[str]()
+    structure = shown.structure
+    kind = OWN_FORMS[form][0] if form in OWN_FORMS else None
+    suffix = suffix_for(kind, form) if kind else ""
+    if kind == "program":
+        outputs, left_out = recorded_outputs(structure)
+        content = compile(structure, outputs).source(form, str(question.get("name") or "mechanism")).encode("utf-8")
+        notes = [f"Left out: {one}" for one in left_out]
+    elif kind is not None:
+        content = draw(structure).content(form) if kind == "picture" else report(structure.mechanism).content(form)
+    elif form in writable_formats():
+        written = write(structure.mechanism, form)
+        content, suffix, notes = written.content, writable_formats()[form].suffix or PLAIN, list(written.notes)
+    else:
+        known = [*OWN_FORMS, *writable_formats()]
+        raise UnknownName(Problem("to", f"nothing is exported as {form!r}", suggestion(form, known)))
+    return {"content": b64encode(content).decode("ascii"), "suffix": suffix, "notes": notes, "problems": []}
+
+
+def opened(question: Mapping[str, Any]) -> Reply:
+    """Reply the document of what somebody names or gives: of the catalog, by lengths, a link, another program's file.
+
+    Nothing is read from this machine: a file comes as its content.
+    """
+    from compoundkin.files.exchange.content import Content, as_utf8
+    from compoundkin.files.exchange.known_formats import readable_formats, recognised
+    from compoundkin.files.mechanism_files import dumps
+    from compoundkin.files.shipped_mechanisms import path, shipped
+    from compoundkin.synthesis.linkages import linkage_of
+
+    name, content = str(question.get("name", "")).strip(), question.get("content")
+    if isinstance(content, str):
+        try:
+            raw = b64decode(content, validate=True)
+        except Error:
+            raise InvalidInput(Problem("content", "this is no content in base 64")) from None
+        given = Content(as_utf8(raw), name)
+    elif name in shipped():
+        return {"text": path(name).read_text(encoding="utf-8"), "notes": [], "problems": []}
+    elif (made := linkage_of(name)) is not None:
+        return {"text": dumps(made), "notes": [], "problems": []}
+    elif "://" in name or "\n" in name:
+        given = Content(name.encode("utf-8", "surrogatepass"))
+    else:
+        what = "it is no name of the catalog, no link, and no linkage with its lengths"
+        raise UnknownName(Problem(name, what, suggestion(name, list(shipped()))))
+    found = recognised(given, readable_formats()).read(given)
+    return {"text": dumps(found.mechanism), "notes": list(found.notes), "problems": []}
+
+
+# Questions about what moves, and those for which no mechanism is needed.
+OF_MECHANISMS: Mapping[str, Callable[[DrivenStructure, Mapping[str, Any]], Reply]] = {
+    "results": results,
+    "plots": plots,
+    "configurations": every_configuration,
+    "circuits": every_circuit,
+    "overlays": overlays,
+    "export": exported,
+}
+OF_FILES: Mapping[str, Callable[[Mapping[str, Any]], Reply]] = {"forms": forms, "open": opened}

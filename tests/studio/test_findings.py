@@ -1,0 +1,139 @@
+"""Results in the studio are the package's own; configurations that are chosen; what does not meet; files of others."""
+
+from __future__ import annotations
+
+from base64 import b64decode, b64encode
+from typing import Any
+
+import numpy as np
+import pytest
+
+import compoundkin as ck
+from compoundkin.files.mechanism_files import dumps, loads
+from compoundkin.studio import answer
+from tests.studio.test_answers import FOUR_BAR, START, edited, shipped_text
+
+pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
+
+
+def reply(text: str, ask: str, **more: Any) -> dict[str, Any]:
+    found = answer(text, {"ask": ask, **more})
+    assert found["problems"] == []
+    return found
+
+
+def test_the_report_is_the_packages_own_and_without_styles() -> None:
+    text = shipped_text("slider-crank")
+    found, own = reply(text, "results"), ck.report(loads(text))
+    assert [one["key"] for one in found["sections"]] == [one.key for one in own.sections]
+    html = "".join(one["html"] for one in found["sections"])
+    assert "<table" in html
+    assert " style=" not in html
+    assert "<script" not in html
+    # every name can be asked for
+    motion = ck.solve(loads(text))
+    for name in found["quantities"]:
+        ck.quantity(motion, name)
+
+
+def test_titles_cannot_bring_elements_into_the_page() -> None:
+    text = shipped_text("slider-crank").replace('title = "', 'title = "<img src=x onerror=alert(1)>', 1)
+    html = "".join(one["html"] for one in reply(text, "results")["sections"])
+    assert "<img" not in html
+
+
+@pytest.mark.parametrize("drawn", [True, False])
+def test_a_chosen_configuration_is_the_one_that_is_solved(drawn: bool) -> None:
+    text = edited(START, *FOUR_BAR) if drawn else answer("", {"ask": "open", "name": "four-bar:60,20,50,40"})["text"]
+    pose = 40
+    both = reply(text, "configurations", pose=pose)["configurations"]
+    assert [one["is_shown"] for one in both].count(True) == 1
+    other = next(one["name"] for one in both if not one["is_shown"])
+    changed = edited(text, {"do": "configuration", "name": other}, pose=pose)
+    before, after = ck.solve(loads(text)), ck.solve(loads(changed))
+    for name, link in before.mechanism.geometry.points.items():
+        for letter in link:
+            here, there = (list(one.mechanism.geometry.points[name]) for one in (before, after))
+            assert here == there
+            lengths = [
+                abs(
+                    np.ravel(one.mechanism.geometry.points[name][letter] - one.mechanism.geometry.points[name][here[0]])
+                )
+                for one in (before, after)
+            ]
+            np.testing.assert_allclose(*lengths, atol=1e-9)
+    # the loop is mirrored in the line from B to D: C lies on its other side
+    sides = []
+    for one in (before, after):
+        b, c, d = (one.points[letter].position for letter in "BCD")
+        sides.append(np.sign(((c - b) * np.conj(d - b)).imag[0]))
+    assert sides[0] == -sides[1]
+    if drawn:
+        assert changed.startswith(START)
+
+
+def test_where_it_cannot_be_assembled_the_circles_miss() -> None:
+    text = edited(START, *FOUR_BAR[:5], {"do": "driver", "point": "D"})
+    motion = reply(text, "motion")
+    (gap, *_) = motion["gaps"]
+    k = gap["from"]
+    (one, other) = gap["circles"]
+    assert {one["point"], other["point"]} == {"A", "C"}
+    at = {letter: complex(x[k], y[k]) for letter, (x, y) in motion["points"].items() if x[k] is not None}
+    assert "B" not in at
+    apart = abs(at["A"] - at["C"])
+    assert apart > one["radius"] + other["radius"] or apart < abs(one["radius"] - other["radius"])
+    # what is known is where the driver has it: the bar goes from C to D
+    value = np.deg2rad(motion["drives"]["bar3"]["values"][k])
+    assert np.angle(at["D"] - at["C"]) == pytest.approx(value - 2 * np.pi * round(value / 2 / np.pi), abs=1e-5)
+
+
+def test_velocities_and_centres_are_those_of_the_motion() -> None:
+    text = shipped_text("six-bar")
+    found, k = reply(text, "overlays"), 60
+    motion = ck.solve(ck.load("six-bar"), {"crank": np.deg2rad(np.arange(361.0))})
+    v = {letter: motion.points[letter].velocity[k] for letter in "DACG"}
+    told = {letter: complex(*(part[k] for part in found["velocities"][letter])) for letter in v}
+    scale = abs(v["D"]) / abs(told["D"])
+    for letter, value in v.items():
+        assert told[letter] * scale == pytest.approx(value, rel=1e-4)
+    centre = next(xy for links, xy in found["centres"].items() if set(links.split(", ")) == {"frame", "plate"})
+    # all velocities of the plate are at right angles to the way from its centre
+    for letter in "DAC":
+        arm = motion.points[letter].position[k] - complex(centre[0][k], centre[1][k])
+        assert (arm * np.conj(v[letter])).real == pytest.approx(0, abs=1e-3 * abs(arm) * abs(v[letter]))
+
+
+def test_every_form_is_offered_and_written_or_refused_with_reasons() -> None:
+    text = shipped_text("slider-crank")
+    for form in reply("", "forms")["forms"]:
+        found = answer(text, {"ask": "export", "to": form["name"], "name": "mine"})
+        if found["problems"]:
+            assert all(one["what"] for one in found["problems"])
+        else:
+            assert found["suffix"] == form["suffix"]
+            assert len(b64decode(found["content"])) > 20
+    assert answer(text, {"ask": "export", "to": "pyton"})["problems"][0]["remedy"] == "did you mean 'python'?"
+
+
+def test_what_another_program_reads_comes_back_as_it_went() -> None:
+    text = shipped_text("slider-crank")
+    written = reply(text, "export", to="linkage")
+    back = reply("", "open", name="it.linkage2", content=written["content"])["text"]
+    assert ck.decompose(loads(back)).mobility.freedoms == 1
+    assert ck.decompose(loads(back)).faults == ()
+
+
+def test_nothing_of_this_machine_is_opened(tmp_path: Any) -> None:
+    path = tmp_path / "secret.toml"
+    path.write_text(dumps(ck.load("crank-rocker")))
+    found = answer("", {"ask": "open", "name": str(path)})
+    assert "no name of the catalog" in found["problems"][0]["what"]
+    assert answer("", {"ask": "open", "name": "x", "content": "?"})["problems"]
+    content = b64encode(b"nothing of any program").decode()
+    assert answer("", {"ask": "open", "name": str(path), "content": content})["problems"]
+
+
+def test_what_does_not_move_yet_is_told_so() -> None:
+    for ask in ("plots", "configurations", "circuits", "overlays"):
+        assert answer(START, {"ask": ask, "names": []})["problems"], ask
