@@ -481,7 +481,7 @@ export class Gestures {
     return [
       { words: "Choose all", key: "Ctrl+A", why: canvas.allLetters.length ? "" : "there is nothing", run: () => this.pickAll() },
       { words: "All of it in view", key: "F", run: () => canvas.fit() },
-      { words: "A photograph beneath…", run: () => document.getElementById("photo").click() },
+      { words: "A photograph beneath…", run: () => this.studio.part("photo").click() },
       { words: "Scale the photograph by two points", why, run: () => this.choose("measure") },
       { words: "Move the photograph", why, run: () => this.choose("photo") },
       { words: "Photograph fainter", why, run: shade(-0.2) },
@@ -517,7 +517,7 @@ export class Gestures {
       box.append(button);
     }
     box.addEventListener("keydown", (event) => {
-      const all = [...box.children], k = all.indexOf(document.activeElement);
+      const all = [...box.children], k = all.indexOf(this.studio.focused);
       const to = { ArrowDown: k + 1, ArrowUp: k - 1 + all.length, Home: 0, End: all.length - 1 }[event.key];
       if (event.key === "Escape") this.closeMenu();
       else if (event.key === "Tab") this.closeMenu();
@@ -526,7 +526,7 @@ export class Gestures {
       event.preventDefault();
       event.stopPropagation();
     });
-    document.body.append(box);
+    this.studio.root.append(box);
     box.style.left = `${Math.max(4, Math.min(around.left + at[0], innerWidth - box.offsetWidth - 4))}px`;
     box.style.top = `${Math.max(4, Math.min(around.top + at[1], innerHeight - box.offsetHeight - 4))}px`;
     this.opened = box;
@@ -540,7 +540,7 @@ export class Gestures {
   closeMenu() {
     if (!this.opened) return;
     document.removeEventListener("pointerdown", this.#away, true);
-    const hadFocus = this.opened.contains(document.activeElement);
+    const hadFocus = this.opened.contains(this.studio.focused);
     this.opened.remove();
     this.opened = null;
     if (hadFocus) this.canvas.svg.focus({ preventScroll: true });
@@ -587,7 +587,7 @@ export class Gestures {
     box.addEventListener("keydown", (event) => event.stopPropagation());
     box.addEventListener("close", () => box.remove());
     box.append(form);
-    document.body.append(box);
+    this.studio.root.append(box);
     box.showModal();
     Object.values(inputs)[0].select?.();
   }

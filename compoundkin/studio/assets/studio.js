@@ -10,7 +10,7 @@ export class Studio {
   // `root` is the element of the window; `kept` is the history of before and keeps what it is given. A window that is
   // `alone` hears the keys of its whole page.
   constructor(root, { wire, kept = {}, alone = false }) {
-    Object.assign(this, { root, part: parts(root), kept, alone, ended: new AbortController() });
+    Object.assign(this, { root, part: parts(root), kept, token: kept.token ?? "", alone, ended: new AbortController() });
     this.canvas = new Canvas(this.part("canvas"));
     this.gestures = new Gestures(this.canvas, this);
     this.history = [];
@@ -23,7 +23,6 @@ export class Studio {
     this.asking = {};
     this.isFitted = false;
     this.before = kept.before ?? null;
-    this.token = kept.token ?? "";
     this.results = new Results(root, this);
     this.#listen();
     this.wire = wire({ opened: (reply) => this.#open(reply), lost: (wasOpen) => this.#lost(wasOpen) });
@@ -39,6 +38,8 @@ export class Studio {
     this.wire.end();
   }
 
+  // also inside a shadow root
+  get focused() { return this.root.getRootNode().activeElement; }
   get text() { return this.history[this.place] ?? ""; }
   get structure() { return this.canvas.structure; }
   get motion() { return this.canvas.motion; }
