@@ -78,6 +78,7 @@ if TYPE_CHECKING:
     from compoundkin.studies.samples.value_ranges import around
     from compoundkin.studies.study import study
     from compoundkin.studies.tolerances.tolerance import tolerance
+    from compoundkin.studio.notebook import studio
     from compoundkin.synthesis.alternatives import alternatives
     from compoundkin.synthesis.inversion import with_driver, with_frame
     from compoundkin.view.animation import animate
@@ -152,6 +153,7 @@ __all__ = [
     "solve",
     "spring",
     "stop",
+    "studio",
     "study",
     "synthesise",
     "tolerance",
@@ -162,10 +164,11 @@ __all__ = [
     "with_frame",
 ]
 
-# A room has the name of a function: the room is loaded once and its name given back, so that `__getattr__` finds the
-# function. The room itself holds nothing, so that this costs nothing.
-import_module("compoundkin.configurations")
-globals().pop("configurations", None)
+# Two rooms have the name of a function: they are loaded once and their names given back, so that `__getattr__` finds
+# the functions. The rooms themselves hold nothing, so that this costs nothing.
+for _room in ("configurations", "studio"):
+    import_module(f"compoundkin.{_room}")
+    globals().pop(_room, None)
 
 # What writes no mechanism is imported when it is first asked for: the module of each such word.
 _LATE = {
@@ -198,6 +201,7 @@ _LATE = {
     "simulate": "dynamics.simulation.forward_dynamics",
     "singularities": "analysis.singularities",
     "solve": "kinematics",
+    "studio": "studio.notebook",
     "study": "studies.study",
     "synthesise": "dimensional.synthesis",
     "tolerance": "studies.tolerances.tolerance",

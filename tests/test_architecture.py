@@ -90,7 +90,8 @@ NOUNS = {"finding", "bracketing", "sampling", "tracking", "rolling", "matching",
 # curve is the ninth of the tasks
 # linkages, with thirteen of them, is a module of its own: they are looked up by these names
 # exercise makes the sheets of a class, and with_dimensions stands beside with_driver and with_frame
-NAMES_AT_MOST, NAMES_OF_MODULES_AT_MOST, MODULES_AT_MOST = 70, 224, 12
+# studio shows its window in a notebook
+NAMES_AT_MOST, NAMES_OF_MODULES_AT_MOST, MODULES_AT_MOST = 71, 224, 12
 
 
 def only_shrinks(found: Iterable[str], still: Iterable[str] = ()) -> None:

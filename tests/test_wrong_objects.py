@@ -157,6 +157,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "simulate": {"mechanism": h["heavy"], "start": {"upper": (0.1, 0.2)}, "until": 0.1, "prescribed": {"fore": 1.0},
                      "events": {}, "stop": (), "restitution": None,
                      "times": None, "tolerance": 1e-6, "modes": None, "progress": None},
+        "studio": {"mechanism": h["bar"]},
         "slide": {"link": "a", "on": "b", "at": "A", "through": "B", "angle": 0.0, "toward": None, "offset": None,
                   "turn": None, "name": "n"},
         "slot": {"link": "a", "on": "b", "at": "A", "through": "B", "angle": 0.0, "toward": None, "offset": 0.0,

@@ -243,7 +243,7 @@ class StudioServer:
             newest: dict[str, int] = {}
             locks = {name: asyncio.Lock() for name in self.answerers}
             while True:
-                message = _message(await wire.receive_text())
+                message = message_in(await wire.receive_text())
                 if message is None or len(waiting) >= MOST_WAITING:
                     await wire.close(REFUSED)
                     return
@@ -330,8 +330,8 @@ class Message:
     mark: str
 
 
-def _message(text: str) -> Message | None:
-    """Return a message; None for what is none."""
+def message_in(text: str) -> Message | None:
+    """Return the message of a text; None for what is none."""
     try:
         given = json.loads(text)
         number, document, question = given["id"], given["document"], given.get("question", {})

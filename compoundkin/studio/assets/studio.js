@@ -48,9 +48,12 @@ export class Studio {
 
   // --- the document and its history
 
-  #open({ text, mark, file, folder, is_new: isNew }) {
+  #open({ text, mark, file, folder, is_new: isNew, is_given: isGiven, is_kept: isKept }) {
     const isAgain = this.file !== undefined;
     this.part("save").disabled = false;
+    // a notebook has what is drawn at each step
+    this.part("save").hidden = this.part("state").hidden = Boolean(isKept);
+    if (isGiven) { this.put(text); return; }
     if (isAgain) {
       // the server has come back: what is here goes on, and what is on disk is looked at when it is saved
       if (this.isLost) this.#notice("");

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +12,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.files.mechanism_files import loads
 from tests.studio.test_answers import shipped_text
+from tests.studio.test_notebook import opened, told
 from tests.view.page.test_studio import server, window
 
 __all__ = ["server", "window"]
@@ -64,3 +67,56 @@ def test_files_are_opened_and_exported(window: Any, tmp_path: Path) -> None:
     seen.until("studio.isSettled && studio.structure?.moves")
     assert ck.decompose(loads(seen.text)).mobility.freedoms == 1
     assert seen.complaints == []
+
+
+# A page that mounts the widget's module with a model whose messages go to Python.
+MOUNTED = """async ([module, name]) => {
+  const heard = new Set();
+  const model = {
+    on: (kind, run) => heard.add(run), off: (kind, run) => heard.delete(run), get: () => null,
+    send: async (content) => {
+      for (const one of JSON.parse(await toPython(content.text))) for (const run of heard) run(one);
+    },
+  };
+  const { default: widget } = await import(URL.createObjectURL(new Blob([module], { type: "text/javascript" })));
+  const el = document.createElement("div");
+  el.id = name;
+  document.body.append(el);
+  window.mounted = { ...(window.mounted ?? {}), [name]: { heard, el, unmount: await widget.render({ model, el }) } };
+}"""
+
+
+def test_the_widget_is_drawn_in_and_leaves_nothing_behind(contexts: Callable[..., Any]) -> None:
+    """Two windows in one page; one is unmounted, and the other one goes on."""
+    widget, comm = opened(ck.load("crank-rocker"))
+    view, complaints = contexts((1000, 900), "").new_page(), list[str]()
+    view.on("console", lambda message: complaints.append(message.text))
+    view.on("pageerror", lambda error: complaints.append(str(error)))
+
+    def to_python(text: str) -> str:
+        before = len(comm.sent)
+        told(widget, comm, json.loads(text))
+        return json.dumps([{"text": json.dumps(one)} for one in comm.sent[before:]])
+
+    view.expose_function("toPython", to_python)
+    view.goto("about:blank")
+    for name in ("one", "other"):
+        view.evaluate(MOUNTED, [widget._esm, name])
+        view.wait_for_function(f"mounted.{name}.el.firstChild.studio.isSettled")
+    studio = "mounted.other.el.firstChild.studio"
+    view.evaluate(f"{studio}.edit({{ do: 'bar', from: {{ point: 'C' }}, to: {{ at: [9, 9] }} }})")
+    view.wait_for_function(f"{studio}.isSettled && {studio}.text.includes('bar1')")
+    assert list(widget.mechanism.links)[-1] == "bar1"
+    # keys stay inside: one that would ground a point in a notebook's other cell does nothing there
+    view.evaluate("() => { window.keys = 0; document.addEventListener('keydown', () => { window.keys += 1; }); }")
+    view.locator("#other #canvas").press("Control+z")
+    view.wait_for_function(f"{studio}.isSettled && !{studio}.text.includes('bar1')")
+    assert view.evaluate("window.keys") == 0
+    view.evaluate("mounted.one.unmount()")
+    assert view.evaluate("[mounted.one.heard.size, mounted.one.el.childElementCount, mounted.other.heard.size]") == [
+        0,
+        0,
+        1,
+    ]
+    assert complaints == []
+    view.close()
