@@ -30,7 +30,7 @@ MODULES = {
 
 # Formats that are only read, and those that are only written.
 READ_ONLY = ("linkage-sim", "pmks-file")
-WRITE_ONLY = ("mjcf", "geogebra", "geogebra-commands", "dxf", "cam-profile")
+WRITE_ONLY = ("mjcf", "geogebra-commands", "dxf", "cam-profile")
 
 
 def format_named(name: str) -> ExchangeFormat:

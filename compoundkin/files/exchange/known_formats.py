@@ -89,12 +89,11 @@ _TABLE = "save a table of its joints as text: link names, type, x, y"
 # What is no mechanism of a program that is read, but often meant for one: what it is, and what helps.
 _STRANGERS: tuple[tuple[Callable[[Content], object], str, str], ...] = (
     (lambda c: not c.raw.strip(), "it is empty", ""),
-    (lambda c: c.raw.startswith(b"PK\x03\x04"), "it is a zip archive, such as GeoGebra and spreadsheets save", _TABLE),
+    (lambda c: c.raw.startswith(b"PK\x03\x04"), "it is a zip archive, such as spreadsheets save", _TABLE),
     (lambda c: not c.is_text, "it is a binary file, which only its own program can read", _TABLE),
     (lambda c: re.search(r'(?m)^\s*format\s*=\s*\d|^\{\s*"format"\s*:\s*\d', c.head),
      "it is a mechanism file of compoundkin", "load it by a name that ends in .toml or .json"),
     (lambda c: re.search(r"<mujoco\b", c.head), "it is a MuJoCo model, which is only written", ""),
-    (lambda c: re.search(r"<geogebra\b", c.head), "it is a GeoGebra construction, which is only written", ""),
     (lambda c: re.search(r"<robot\b", c.head), "it is a robot (URDF), which has no closed loops", ""),
     (lambda c: re.match(r"(?i)<!doctype html|<html\b", c.head), "it is a web page", "copy the link, or save its file"),
     (lambda c: re.match(r"0\r?\n\s*SECTION", c.head), "it is a DXF drawing, which is only written", _TABLE),

@@ -19,6 +19,8 @@ from functools import cache
 import numpy as np
 
 import compoundkin as ck
+from compoundkin.files.exchange.content import Content
+from compoundkin.files.exchange.geogebra.read_construction import unpacked
 from compoundkin.files.exchange.known_formats import readable_formats
 from tests import catalog
 from tests.files.exchange.references import entries
@@ -74,6 +76,11 @@ class Failure:
     told: str
 
 
+def text_of(written: ck.exchange.Exported) -> str:
+    """The text of a file, that in the archive where it is one."""
+    return unpacked(Content(written.content))
+
+
 @cache
 def contents(form: str) -> tuple[str, ...]:
     """Whole files of a format: the samples, and mechanisms of the catalog."""
@@ -81,7 +88,7 @@ def contents(form: str) -> tuple[str, ...]:
     written = {one.name for one in ck.exchange.formats() if one.is_written}
     for name in WRITTEN if form in written else ():
         try:
-            found.append(ck.exchange.write(catalog.mechanism(name), form).text)
+            found.append(text_of(ck.exchange.write(catalog.mechanism(name), form)))
         except ck.errors.CompoundkinError:
             continue
     assert found, form

@@ -14,7 +14,7 @@ from compoundkin.files.exchange import MODULES, READ_ONLY, WRITE_ONLY
 from compoundkin.files.exchange.content import MOST_BYTES, Content
 from compoundkin.files.exchange.known_formats import readable_formats, recognised, writable_formats
 from tests import catalog
-from tests.files.exchange.mutations import contents, failures
+from tests.files.exchange.mutations import contents, failures, text_of
 
 READ, WRITTEN = tuple(readable_formats()), tuple(writable_formats())
 # Damaged files of each format: thousands by hand, python -m tests.files.exchange.mutations
@@ -102,7 +102,7 @@ def test_there_and_back_it_is_the_same(form: str) -> None:
             written = ck.exchange.write(mechanism, form)
         except ck.errors.InvalidInput:
             continue
-        found = ck.exchange.compare(mechanism, ck.exchange.read(written.text + "\n").mechanism)
+        found = ck.exchange.compare(mechanism, ck.exchange.read(text_of(written) + "\n").mechanism)
         assert found.within(ROUNDED.get(form, 1e-9)), (name, found)
         assert found.largest is not None
         assert np.isfinite(found.largest.distance)

@@ -30,7 +30,7 @@ from compoundkin.base.errors import (
     suggestion,
 )
 from compoundkin.base.suffixes import suffix_for
-from compoundkin.files.exchange.chords import short_chords
+from compoundkin.files.exchange.cam_profile import short_chords
 from compoundkin.files.exchange.contract import Exported, Writable, flag, letters_of, positive
 from compoundkin.files.exchange.dxf.link_contours import Contour, LinkPart, link_parts
 from compoundkin.files.exchange.posed_mechanism import PosedMechanism

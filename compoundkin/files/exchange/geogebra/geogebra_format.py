@@ -1,4 +1,4 @@
-"""GeoGebra, written: a construction as a .ggb file or as commands, with notes on what it leaves out.
+"""GeoGebra's files: a construction as a .ggb file, read and written, or as commands, with notes on what is left out.
 
 The construction has sliders for the drivers, then goes group by group. Its file is XML: objects, styles and shapes, and
 the window.
@@ -17,7 +17,8 @@ import numpy as np
 
 from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem
-from compoundkin.files.exchange.contract import Exported, Writable
+from compoundkin.files.exchange.content import MOST_BYTES, Content
+from compoundkin.files.exchange.contract import Exported, Imported, Readable, Writable
 from compoundkin.files.exchange.geogebra.constructed_sides import (
     ChosenSides,
     InsideBody,
@@ -46,6 +47,7 @@ from compoundkin.files.exchange.geogebra.group_constructions import (
     is_driven_constructed,
     is_train,
 )
+from compoundkin.files.exchange.geogebra.read_construction import AUTHOR, is_construction
 from compoundkin.files.exchange.posed_mechanism import PosedMechanism, posed_mechanism
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.groups import GroupSolver, as_dyad
@@ -213,13 +215,24 @@ def _is_visible(shown: PosedMechanism, values: Mapping[str, float]) -> bool:
 _DAY = (1980, 1, 1, 0, 0, 0)
 
 
-class GeogebraFile(Writable):
-    """An archive with the construction in it."""
+class GeogebraFile(Readable, Writable):
+    """An archive with the construction in it; read also as the text that is in the archive."""
 
     name: ClassVar[str] = "geogebra"
     program: ClassVar[str] = "GeoGebra"
     title: ClassVar[str] = "GeoGebra file"
     suffix: ClassVar[str] = ".ggb"
+    most: ClassVar[int] = MOST_BYTES
+
+    def recognises(self, content: Content) -> bool:
+        """Return whether there is a construction in it."""
+        return is_construction(content)
+
+    def read(self, content: Content) -> Imported:
+        """Return the mechanism that a construction moves as."""
+        from compoundkin.files.exchange.geogebra.construction_drawing import read_construction
+
+        return read_construction(content, self.name)
 
     def write(self, shown: PosedMechanism, **options: Any) -> Exported:
         """Return the file. Raises InvalidInput listing all groups that have no construction."""
@@ -334,7 +347,7 @@ def xml_of(build: Construction, title: str, window: ViewWindow) -> bytes:
     kernel = SubElement(root, "kernel")
     for name, value in (("continuous", "false"), ("decimals", "2"), ("angleUnit", "degree"), ("coordStyle", "0")):
         SubElement(kernel, name, {"val": value})
-    inside = SubElement(root, "construction", {"title": title, "author": "", "date": ""})
+    inside = SubElement(root, "construction", {"title": title, "author": AUTHOR, "date": ""})
     sliders = 0
     for step in build.steps:
         _add_step(inside, step, sliders)
