@@ -259,25 +259,30 @@ class _MachineTurn:
 
         mean = float(loads.antiderivative()(TURN)) / TURN
         middle = 0.5 * float(np.max(self.inertia(self.shaft))) * self.speed**2
-        parts = PARTS
+        parts, low, high = PARTS, 0.5 * middle, 2.0 * middle
         while True:
             step = _EnergySteps(self, loads, mean, parts)
-            low, high = 0.5 * middle, 2.0 * middle
-            while step.gain(low) < 0.0:
-                low *= 0.25
             while step.gain(high) > 0.0:
                 high *= 4.0
-            energies, angles = step.cycle(brentq(step.gain, low, high, xtol=1e-14 * middle, rtol=1e-14))
-            slopes = self._slope(step.places, energies)
-            # the steps must follow how fast a difference of energy dies away
-            if float(np.max(mean * slopes / energies)) * TURN / (PLACES * parts) < STABLE:
-                break
+            # the energy is never above that which begins with more: steps too large for that one are too large for it
+            if self._is_followed(step, step.cycle(high)[0]):
+                while step.gain(low) < 0.0:
+                    low *= 0.25
+                energies, angles = step.cycle(brentq(step.gain, low, high, xtol=1e-14 * middle, rtol=1e-14))
+                if self._is_followed(step, energies):
+                    break
             parts *= 4
             if parts > MOST_PARTS:
                 remedy = "force_analysis(motion, inertia=False) leaves it out"
                 raise InvalidInput(Problem("forces", "the inertia is too small against the loads", remedy))
+        slopes = self._slope(step.places, energies)
         rates = np.stack([mean * slopes - loads(step.places), slopes])
         return CubicHermiteSpline(step.places, np.stack([energies, angles]), rates, axis=-1)
+
+    def _is_followed(self, step: _EnergySteps, energies: Number) -> bool:
+        """Return whether steps follow how fast a difference of energy dies away."""
+        rates = step.mean * self._slope(step.places, energies) / energies
+        return float(np.max(rates)) * step.step < STABLE
 
     def _way(self, angle: Any, slope: Any) -> Number:
         """Return the way at the angles of the shaft, by Newton's method from a table of the monotone angle."""

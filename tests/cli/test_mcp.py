@@ -14,6 +14,7 @@ import time
 import tomllib
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -25,15 +26,22 @@ from compoundkin.cli import mcp as server_module
 from compoundkin.files.mechanism_files import loads
 from tests.support import FOUR_BAR, interrupts_heard
 
-anyio = pytest.importorskip("anyio")
-mcp = pytest.importorskip("mcp")
+if find_spec("mcp") is None:
+    pytest.skip("mcp is not installed", allow_module_level=True)
+
+
+def in_client(target: Any = None) -> Any:
+    """A client of a server. The SDK is loaded by the tests that use it: it takes as long as a tenth of all others."""
+    import mcp
+
+    return mcp.Client(target or server_module.server())
 
 
 def asked(*calls: tuple[str, dict[str, Any]], target: Any = None) -> list[Any]:
     """The results of calls, one after another, through a client."""
 
     async def talk() -> list[Any]:
-        async with mcp.Client(target or server_module.server()) as client:
+        async with in_client(target) as client:
             return [await client.call_tool(name, given) for name, given in calls]
 
     return list(in_thread(talk))
@@ -41,6 +49,8 @@ def asked(*calls: tuple[str, dict[str, Any]], target: Any = None) -> list[Any]:
 
 def in_thread(talk: Callable[[], Any]) -> Any:
     """What a coroutine returns, in a thread of its own: the browser of other tests keeps a loop in the main one."""
+    import anyio
+
     with ThreadPoolExecutor(1) as pool:
         return pool.submit(anyio.run, talk).result()
 
@@ -53,7 +63,7 @@ def test_a_client_sees_seven_tools_with_strict_schemas() -> None:
     from jsonschema import Draft202012Validator
 
     async def listed() -> Any:
-        async with mcp.Client(server_module.server()) as client:
+        async with in_client() as client:
             return (await client.list_tools()).tools
 
     found = in_thread(listed)

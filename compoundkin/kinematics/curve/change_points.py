@@ -336,11 +336,13 @@ def _known(curve: ConfigurationCurve, k: int, near: Number, shared: _SharedSlope
     return [_Known(designs, samples, each, square) for square, each in enumerate(slopes)]
 
 
-def _margins(curve: ConfigurationCurve, upto: int) -> Iterator[tuple[slice, slice, Mapping[int, Number]]]:
-    """Yield blocks of the path's samples, designs and indices, with the margins of the groups up to one."""
-    path = curve.path
-    for d, m in blocks(path.designs, len(path.samples), POSES_OF_A_SWEEP):
-        at = path.samples[m]
+def _margins(
+    curve: ConfigurationCurve, upto: int, samples: Number | None = None
+) -> Iterator[tuple[slice, slice, Mapping[int, Number]]]:
+    """Yield blocks of samples, else all of the path's, designs and indices, with the margins of groups up to one."""
+    path, samples = curve.path, curve.path.samples if samples is None else samples
+    for d, m in blocks(path.designs, len(samples), POSES_OF_A_SWEEP):
+        at = samples[m]
         block = curve.run(path.at(at).cut(d, slice(None)), 0, at[None], np.arange(d.start, d.stop)[:, None], upto)
         yield d, m, block.margins
 
@@ -706,7 +708,8 @@ def near_groups(curve: ConfigurationCurve) -> set[int]:
     """Return the groups that come near a limit position somewhere along the path."""
     upto = 1 + max((k for k, solver in enumerate(curve.solving_order.solvers) if solver.modes_may_meet), default=-1)
     found: set[int] = set()
-    for _, _, margins in _margins(curve, upto) if upto else ():
+    samples = curve.path.samples_of_a_turn if not curve.flips and not curve.paths else curve.path.samples
+    for _, _, margins in _margins(curve, upto, samples) if upto else ():
         found |= {k for k, margin in margins.items() if np.any(margin < NEAR)}
         sines = {k: np.sqrt(np.abs(np.atleast_2d(margin))) for k, margin in margins.items() if k not in found}
         found |= {k for k, sine in sines.items() if sine.shape[1] > 1 and np.any(_may_pass(sine))}

@@ -32,6 +32,7 @@ from compoundkin.kinematics.curve.driver_path import (
     driver_path,
 )
 from compoundkin.kinematics.curve.group_paths import (
+    MOST_KEPT,
     GroupPath,
     KnownSurroundings,
     both_ways,
@@ -258,7 +259,9 @@ def _choose(
     first = curve.path.at_home()
     block = curve.solving_order.start(first.ends, first.series(0), 0, (curve.path.designs, 1), NEAREST)
     begin, samples = 0, curve.path.samples
-    between = ascending(samples, (samples[1:] + samples[:-1]) / 2.0)
+    # where nothing is kept of so many samples, nothing is known between them
+    is_kept = curve.path.designs * len(samples) <= MOST_KEPT
+    between = ascending(samples, (samples[1:] + samples[:-1]) / 2.0) if is_kept else samples
     ways = (*both_ways(curve), KnownSurroundings(curve, between, order=1))
     for k in sorted(k for k in curve.solving_order.followable - curve.fixed.keys() if k >= since):
         run(curve.solving_order, block, _First(curve, since, ways, known or {}), k, begin)

@@ -84,6 +84,12 @@ class DriverPath:
         pieces = zip(knots[:-1], knots[1:], counts, strict=True)
         return np.append(np.concatenate([np.linspace(a, b, n, endpoint=False) for a, b, n in pieces]), knots[-1])
 
+    @property
+    def samples_of_a_turn(self) -> Number:
+        """The samples up to a turn and a place from home where the path wraps, which tell of all turns; else all."""
+        away, turn = np.abs(self.samples - self.home), self.period + 1.0
+        return self.samples[away <= turn] if np.max(away) > turn else self.samples
+
     def at_home(self) -> Inputs:
         """Return the inputs of the drawn pose, which is a knot or lies between two."""
         k = int(np.searchsorted(self.places, self.home))
