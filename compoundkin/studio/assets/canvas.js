@@ -99,6 +99,10 @@ export class Canvas {
     for (const [xs, ys] of Object.values(this.motion?.points ?? {})) {
       xs.forEach((x, k) => { if (x !== null && k % 6 === 0) points.push([x, ys[k]]); });
     }
+    for (const { at, radius, link } of (this.structure?.pairs ?? []).flatMap((one) => one.shapes ?? []).filter((one) => one.radius)) {
+      const [x, y] = this.structure.origins[link] ?? [0, 0];
+      points.push(...[-1, 1].flatMap((side) => [[x + at[0] + side * radius, y + at[1]], [x + at[0], y + at[1] + side * radius]]));
+    }
     if (points.length < 2) return;
     const [xs, ys] = [0, 1].map((k) => points.map((one) => one[k]));
     const [left, right, low, top] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];

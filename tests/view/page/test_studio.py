@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import random
-import shutil
 import socket
 import threading
 import time
@@ -626,11 +625,35 @@ def gestures(seen: Window, count: int, dice: random.Random) -> None:
                 return min(max(x, 2), wide - 2) - wide / 2, min(max(y, 2), high - 2) - high / 2
             return dice.uniform(-wide, wide) / 2.2, dice.uniform(-high, high) / 2.2
 
-        if dice.random() < 0.55:
-            seen.drag(somewhere(), somewhere())
+        what = dice.random()
+        if what < 0.5:
+            seen.drag(
+                somewhere(), somewhere(), dice.choice(["", "", "", "Shift", "Alt", "Control"]), dice.random() < 0.2
+            )
+        elif what < 0.6:
+            seen.hold(somewhere(), somewhere())
+            seen.view.keyboard.type(dice.choice(["25", "40<60", "0", "<"]))
+            seen.view.keyboard.press(dice.choice(["Enter", "Escape"]))
+            seen.view.mouse.up()
+        elif what < 0.75:
+            offered = seen.menu(somewhere()).get_by_role("menuitem").all()
+            some = dice.choice(offered)
+            if "photograph" not in some.inner_text().lower():
+                some.evaluate("one => one.click()")
         else:
-            keys = ["g", "g", "d", "s", "Delete", "v", "b", "Control+z", "Control+y", " ", "n", "ArrowUp", "Escape"]
-            seen.press(somewhere(), dice.choice(keys))
+            seen.press(somewhere(), dice.choice(KEYS))
+        form = seen.view.locator("dialog")
+        if form.count():
+            form.get_by_role("button", name=dice.choice(["Do it", "Do it", "Cancel"])).click()
+        if dice.random() < 0.2:
+            seen.view.keyboard.press("Escape")
+        seen.settle()
+
+
+KEYS = (
+    *("g", "g", "d", "s", "Delete", "v", "b", "c", "p", "n", "w", "t", "l", "r", "k", " ", "f", "7", "Enter"),
+    *("Control+z", "Control+y", "Control+a", "ArrowUp", "Escape", "ContextMenu"),
+)
 
 
 def undone(seen: Window) -> str:
@@ -647,27 +670,3 @@ def test_random_gestures_never_raise_and_are_undone_byte_for_byte(window: Any, s
     assert "# kept" in seen.text
     assert undone(seen) == START
     assert seen.complaints == []
-
-
-def picture(path: Path) -> None:
-    """Write the picture of the page about the studio: the six-bar of the textbook, drawn by gestures and moved."""
-    from playwright.sync_api import sync_playwright
-
-    from tests.view.page.conftest import BROWSERS, FLAGS
-
-    found = next(where for name in BROWSERS if (where := shutil.which(name)))
-    with sync_playwright() as driver, served_studio() as served:
-        browser = driver.chromium.launch(executable_path=found, args=list(FLAGS))
-        served.text = START.replace("Drawn", "Six-bar").replace("# drawn by gestures\n", "").replace("  # kept", "")
-        served.path = Path("six-bar.toml")
-        seen = Window(browser.new_page(viewport={"width": 1280, "height": 760}), served)
-        six_bar(seen)
-        seen.value(
-            "() => { studio.canvas.chosen = null; studio.canvas.over = null; studio.pose(35); studio.canvas.fit(); }"
-        )
-        seen.view.screenshot(path=str(path))
-        browser.close()
-
-
-if __name__ == "__main__":
-    picture(Path(__file__).parents[3] / "docs" / "figures" / "studio.png")
