@@ -163,6 +163,43 @@ def _searched_there(influence: FrictionInfluence, signs: Number, grown: int) -> 
     return sums, state
 
 
+class Regular(NamedTuple):
+    """The frictions with their signs of the solution on which a motion goes on, and the number of solutions."""
+
+    sizes: Number | None
+    solutions: int
+
+
+def regular_solution(influence: FrictionInfluence, signs: Number, grown: int) -> Regular:
+    """Return the frictions at a single pose on which a motion goes on: those of the only regular solution, else None.
+
+    A solution is regular where the determinant of sums minus image is positive, as it is without friction. Another one
+    comes in from infinite forces: with whatever elasticity the contacts have it is unstable, so that the motion passes
+    it by, until both meet and none is left.
+
+    Source: P. Painleve, Sur les lois du frottement de glissement, C. R. Acad. Sci. 121 (1895) 112; L. Prandtl,
+    Bemerkungen zu den Aufsaetzen der Herren F. Klein, R. v. Mises und G. Hamel, Z. Math. Phys. 58 (1910) 196.
+    """
+    starts = np.concatenate([one.T for one in _starts(influence, signs)]).T
+    if len(_acting(influence, signs)) <= grown:
+        starts = np.concatenate([starts, _grown(influence, signs)[..., 0]], axis=1)
+    every = np.zeros(starts.shape[1], dtype=int)
+    sums, good = _from_directions(influence.of(every), signs[:, every], starts)
+    found = list[Number]()
+    for one in sums[:, good].T:
+        if all(np.abs(one - other).max() > SAME_SOLUTION * np.abs(other).max() for other in found):
+            found.append(one)
+    kept = [one for one in found if is_regular(influence, signs, one)]
+    return Regular(-signs[:, 0] * kept[0] if len(kept) == 1 else None, len(found))
+
+
+def is_regular(influence: FrictionInfluence, signs: Number, sums: Number) -> bool:
+    """Return whether a solution at a single pose is regular."""
+    forces = influence.normal_forces(-signs * sums[:, None])
+    matrix = _matrix(influence, signs, _directions(forces, np.abs(forces), 0.0))
+    return bool(np.linalg.det(matrix[0]) > 0.0)
+
+
 def _grown(influence: FrictionInfluence, signs: Number) -> Number:
     """Return the directions of normal forces (normal forces, solutions, poses) of all solutions of Coulomb's law."""
     acting, owners = _acting(influence, signs), _owners(influence)
@@ -308,6 +345,7 @@ class PoseFrictions(NamedTuple):
 
     sizes: Number
     components: Number
+    is_regular: bool = True  # whether the determinant of sums minus image is positive
 
 
 class NormalForceComponents:
@@ -378,16 +416,17 @@ class PoseInfluence:
         found, singular = _solved_once(self.layout.unit - gains, np.ones(len(self.signs)))
         return found if not singular and np.all(found > 0.0) else None
 
-    def solution(self, weights: Number | None) -> PoseFrictions | None:
+    def solution(self, weights: Number | None, near: Number | None = None) -> PoseFrictions | None:
         """Return the frictions and normal forces where the image contracts by these weights, all equal if None.
 
-        Newton's steps, or the image where that is better. None where rounding is too large.
+        Newton's steps, or the image where that is better, from no friction or from frictions `near`. None where
+        rounding is too large.
         """
         layout, own = self.layout, self.own
         rows = -self.signs[:, None] * self.by
         toward = self._toward(own)
         newton, least, scale = False, np.inf, _largest(own)
-        sums = best = layout.of_frictions.dot(toward * own)
+        sums = best = layout.of_frictions.dot(toward * own) if near is None else np.abs(near)
         for _ in range(NEWTON_STEPS):
             components = own + sums.dot(rows)
             toward = self._toward(components)
@@ -397,7 +436,10 @@ class PoseInfluence:
             gap = largest if weights is None else _largest(off / weights)
             shrinks = not newton or gap <= SHRINKS * least
             if largest <= (1.0 if shrinks else 10.0) * SUM_ROUNDING * max(scale, _largest(sums)):
-                return PoseFrictions(-self.signs * sums, components)
+                if weights is not None:
+                    return PoseFrictions(-self.signs * sums, components)
+                matrix = layout.unit - (layout.of_frictions * toward).dot(rows.T)
+                return PoseFrictions(-self.signs * sums, components, bool(np.linalg.det(matrix) > 0.0))
             newton = shrinks
             if shrinks:
                 best, least = image, gap

@@ -242,8 +242,8 @@ def _times(course: SimulatedCourse, times: Any) -> Number:
     """Return the times of the result: the given ones up to the end, else evenly spaced ones."""
     if times is not None:
         return _requested_events(times, course)
-    speeds = [_farthest(step) / (step.last - step.first) for step in course.steps]
-    count = int(np.clip(np.ceil(max(speeds) * course.last / APART), FEWEST, MOST))
+    speeds = [_farthest(step) / (step.last - step.first) for step in course.steps if step.last > step.first]
+    count = int(np.clip(np.ceil(max(speeds, default=0.0) * course.last / APART), FEWEST, MOST))
     return np.linspace(0.0, course.last, count + 1)
 
 

@@ -22,14 +22,13 @@ from compoundkin.base.arrays import Number, cross
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.friction.coulomb_friction import (
-    ONE,
     SUM_ROUNDING,
     TINY,
     FrictionInfluence,
     NormalForceComponents,
     NotUniqueMotion,
     PoseInfluence,
-    solve_coulomb,
+    regular_solution,
 )
 from compoundkin.dynamics.friction.friction_contacts import (
     LoadedContact,
@@ -617,14 +616,14 @@ class FrictionState(BodyState):
         held = None if sides is None else np.concatenate([sides[own], np.zeros(len(part.vectors))])
         frictionless, by = normal[own, 0], normal[own, 1:].T
         here = PoseInfluence(part, part.split(frictionless), part.split(by), signs, held)
-        found = None if here.weights is None else here.solution(here.weights)
-        if found is not None:
+        found = here.solution(here.weights)
+        if found is not None and found.is_regular:
             return found.sizes
         starts = np.searchsorted(part.owners, np.arange(len(signs)))
-        several = solve_coulomb(FrictionInfluence(frictionless[:, None], by[..., None], starts), signs[:, None], 0)
-        if several.state[0] != ONE:
+        several = regular_solution(FrictionInfluence(frictionless[:, None], by[..., None], starts), signs[:, None], 0)
+        if several.sizes is None:
             raise NotUniqueMotion(self.time)
-        return several.sizes[:, 0]
+        return several.sizes
 
     @cached_property
     def accelerations(self) -> Number:

@@ -21,15 +21,15 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.friction.coulomb_friction import (
-    ONE,
     TINY,
     FrictionInfluence,
     NormalForceComponents,
     NotUniqueMotion,
     PoseInfluence,
+    Regular,
     normal_forces_by,
     normal_forces_of,
-    solve_coulomb,
+    regular_solution,
 )
 from compoundkin.dynamics.friction.friction_contacts import (
     AT_REST,
@@ -75,7 +75,7 @@ PLACES, HALVINGS = 64, 50
 NEARLY = 0.01
 # Frictions are mild where their influences stay below this sum, which is checked at so many places of a piece.
 MILD, CHECKED = 0.8, 16
-# Behind a step and at rest a second motion is sought among all solutions where up to so many normal forces act.
+# At the start of a course a second motion is sought among all solutions where up to so many normal forces act.
 GROWN = 6
 # A course begins so far ahead in its stretch, as a part of the table: it has just left the reversal behind it.
 AHEAD = 1e-10
@@ -115,40 +115,51 @@ class NormalForceState:
         found: Number = self.by + (self.along / self.inertia)[:, None] * self.second
         return found
 
-    def free(self, held: Number | None = None, grown: int | None = None) -> FreeMotion | None:
-        """Return a motion at which the driver has no effort; None where there is none.
+    def free(self, held: Number | None = None, near: Number | None = None) -> FreeMotion | None:
+        """Return the motion at which the driver has no effort; None where there is no regular one.
 
-        Normal forces of which a sign is `held` count by it. With a number of normal forces, `grown`, it is None too
-        where there are several: another is sought, if up to so many act among all solutions.
+        Normal forces of which a sign is `held` count by it. Frictions `near` are those of a state nearby.
         """
         if not (self.inertia and np.isfinite(self.push)):
             # nothing is known at speeds that are no numbers
             return FreeMotion(np.nan, np.full(len(self.senses), np.nan))
-        first = self.push / self.inertia
-        joint = PoseInfluence(self.layout, self.own + first * self.second, self.grown, self.senses, held)
-        weights = None if self.is_mild else joint.weights
-        sure = self.is_mild or weights is not None
-        found = joint.solution(weights) if sure or grown is None else None
-        if found is not None:
-            a = first + float(self.along.dot(found.sizes)) / self.inertia
-            return FreeMotion(a, found.sizes, found.components)
-        sizes = self._searched(joint, grown or 0)
-        return None if sizes is None else FreeMotion(first + float(self.along.dot(sizes)) / self.inertia, sizes)
+        joint = self._joint(held)
+        # several motions are sought where a step ends
+        found = joint.solution(None if self.is_mild else joint.weights)
+        if near is not None and (found is None or not found.is_regular):
+            found = joint.solution(None, near)
+        if found is not None and found.is_regular:
+            return FreeMotion(self._accelerated(found.sizes), found.sizes, found.components)
+        sizes = self._searched(joint, 0).sizes
+        return None if sizes is None else FreeMotion(self._accelerated(sizes), sizes)
+
+    def solutions(self, grown: int) -> Regular | None:
+        """Return the regular motion among all if up to so many normal forces act, None where there is one for sure."""
+        joint = self._joint(None)
+        return None if self.is_mild or joint.weights is not None else self._searched(joint, grown)
+
+    def _joint(self, held: Number | None) -> PoseInfluence:
+        """Return the influence of frictions at the acceleration without effort."""
+        own = self.own + self.push / self.inertia * self.second
+        return PoseInfluence(self.layout, own, self.grown, self.senses, held)
+
+    def _accelerated(self, sizes: Number) -> float:
+        """Return the acceleration under frictions."""
+        return (self.push + float(self.along.dot(sizes))) / self.inertia
 
     @property
     def effort_at_rest(self) -> float | None:
-        """The driver's effort without acceleration, None where it is not unique."""
+        """The driver's effort without acceleration, None where there is no regular one."""
         here = PoseInfluence(self.layout, self.own, self.by, self.senses)
         found = None if here.weights is None else here.solution(here.weights)
-        sizes = self._searched(here, GROWN) if found is None else found.sizes
+        sizes = self._searched(here, GROWN).sizes if found is None else found.sizes
         return None if sizes is None else -self.push - float(self.along.dot(sizes))
 
-    def _searched(self, here: PoseInfluence, grown: int) -> Number | None:
-        """Return the frictions where their influences do not contract, None where they are not unique."""
+    def _searched(self, here: PoseInfluence, grown: int) -> Regular:
+        """Return the frictions where their influences do not contract."""
         own, by = self.layout.joined(here.own), self.layout.joined(here.by)
         starts = np.searchsorted(self.layout.owners, np.arange(len(self.senses)))
-        found = solve_coulomb(FrictionInfluence(own[:, None], by[..., None], starts), self.senses[:, None], grown)
-        return found.sizes[:, 0] if found.state[0] == ONE else None
+        return regular_solution(FrictionInfluence(own[:, None], by[..., None], starts), self.senses[:, None], grown)
 
 
 class SlidingStretch(NamedTuple):
@@ -176,6 +187,7 @@ class FrictionTable(TabulatedChart):
     sides: Number | None = None
     has_left: bool = False
     rests: bool = False
+    near_sizes: Number | None = None  # the frictions of the last state
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -280,9 +292,10 @@ class FrictionTable(TabulatedChart):
 
     def _free(self, normal: NormalForceState, time: float, held: Number | None = None) -> FreeMotion:
         """Return the motion without effort. Raises NotUniqueMotion where it is not."""
-        found = normal.free(held)
+        found = normal.free(held, self.near_sizes)
         if found is None:
             raise NotUniqueMotion(time)
+        self.near_sizes = found.sizes
         return found
 
     def begin(self, time: float, values: Number, speeds: Number) -> bool:
@@ -290,15 +303,22 @@ class FrictionTable(TabulatedChart):
         way = float(np.sign(speeds[0])) or self.direction_from_rest(time, values)
         self.direction, self.rests = way or self.direction, way == 0.0
         if way:
-            self.check_only_motion(time, values, speeds)
+            self.has_second_motion(time, values, speeds, GROWN)
         self._enter(time, values, speeds)
         return way != 0.0
 
-    def check_only_motion(self, time: float, values: Number, speeds: Number) -> None:
-        """Raise NotUniqueMotion where Coulomb's law has a second motion."""
+    def has_second_motion(self, time: float, values: Number, speeds: Number, grown: int = 0) -> bool:
+        """Return whether Coulomb's law has a second motion. Raises NotUniqueMotion where it has no regular one.
+
+        It is sought among all solutions if up to so many normal forces act, `grown`.
+        """
         here = self._in_table(time, float(values[0]), float(speeds[0]), self.direction)
-        if here is not None and not here.normal.is_mild and here.normal.free(None, GROWN) is None:
+        found = None if here is None else here.normal.solutions(grown)
+        if found is None:
+            return False
+        if found.sizes is None:
             raise NotUniqueMotion(time)
+        return found.solutions > 1
 
     def accept(self, time: float, values: Number, speeds: Number) -> None:
         """Update the configuration at an accepted state."""
@@ -314,11 +334,16 @@ class FrictionTable(TabulatedChart):
 
     def direction_from_rest(self, time: float, values: Number) -> float:
         """Return the direction in which the driver starts from rest, zero where friction holds it."""
-        # the effort that would sustain motion in each direction; None where it is wedged
-        efforts = [self._at_rest(time, values, way).effort_at_rest for way in (-1.0, 1.0)]
-        if efforts[1] is not None and efforts[1] < 0.0:
-            return 1.0
-        return -1.0 if efforts[0] is not None and efforts[0] > 0.0 else 0.0
+        for way in (1.0, -1.0):
+            here = self._at_rest(time, values, way)
+            # the effort that would sustain motion in a direction; None where it is wedged
+            effort = here.effort_at_rest
+            if effort is not None and effort * way < 0.0:
+                # where frictions feed on each other strongly, inertia may press contacts so that it stays
+                free = here.free()
+                if free is not None and free.acceleration * way > 0.0:
+                    return way
+        return 0.0
 
     def released(self, time: float, values: Number, until: float) -> float:
         """Return the time at which loads overcome friction at rest, at the latest the end."""
@@ -371,13 +396,12 @@ class FrictionTable(TabulatedChart):
     def _sides(self, time: float, value: float, speed: float, far: float) -> Number | None:
         """Return the signs of the normal forces so far ahead, zeros for vectors; None where they are not known."""
         here = self._in_table(time, value, speed, self.direction)
-        free = None if here is None else here.normal.free()
-        if free is None:
-            return None
-        a = free.acceleration
+        free = None if here is None else here.normal.free(None, self.near_sizes)
+        # where a normal force is zero no step of Newton tells its side
+        a = 0.0 if free is None or not np.isfinite(free.acceleration) else free.acceleration
         step = 2.0 * far / (abs(speed) + np.sqrt(speed * speed + 2.0 * abs(a) * far) + np.finfo(float).tiny)
         there = self._in_table(time + step, value + self.direction * far, speed + a * step, self.direction)
-        free = None if there is None else there.normal.free()
+        free = None if there is None else there.normal.free(None, self.near_sizes)
         if there is None or free is None or free.components is None:
             return None
         layout, slides = there.normal.layout, there.normal.senses

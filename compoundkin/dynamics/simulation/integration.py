@@ -65,6 +65,9 @@ STICKS = "sticks"
 SLOWEST = 1e-3
 # The name of the event where friction has no motion, or several.
 WEDGES = "wedges"
+# The name of the event from which on friction has a second motion, which this one passes by, and its text.
+MAY_WEDGE = "may wedge"
+SECOND_MOTION = "from there on friction has a second motion, in which it wedges: a blow may bring that about"
 # The name of the event where other coordinates take a driver's place, and how often one pair follows another as such.
 COORDINATE, MOST_CHANGES = "coordinate", 2
 # The name of the event where loads are stiff.
@@ -169,7 +172,10 @@ def _step(chart: Chart, solver: Any, course: SimulatedCourse) -> None:
         try:
             solver.step()
             if isinstance(chart, FrictionTable) and solver.status != "failed":
-                chart.check_only_motion(float(solver.t), solver.y[:1], solver.y[1:2])
+                has_second = chart.has_second_motion(float(solver.t), solver.y[:1], solver.y[1:2])
+                if has_second and not course.may_wedge:
+                    course.events.append(SimulationEvent(float(solver.t), MAY_WEDGE, SECOND_MOTION, False))
+                course.may_wedge = has_second
             course.evaluations += solver.nfev - asked
             return
         except NotUniqueMotion:
@@ -948,6 +954,7 @@ class SimulatedCourse:
     places: list[tuple[float, LoadBreak]] = field(default_factory=list)  # breaks over coordinates, when passed
     restarts: list[float] = field(default_factory=list)  # times of restarts behind steps that collapsed
     ended: bool = False
+    may_wedge: bool = False  # whether friction had a second motion at the end of the last step
     implicit: bool = False  # whether an implicit method has taken over
     short: int = 0  # checks in a row at which another method would do better
     left: float = 0.0  # the rate of decay at which the implicit method was last left
