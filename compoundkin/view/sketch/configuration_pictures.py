@@ -36,8 +36,8 @@ from compoundkin.view.sketch.picture_options import (
     structure_of,
 )
 from compoundkin.view.sketch.scene import MARGIN, Scene, Window, fitted_window
-from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, moved_shapes, shape_corners
-from compoundkin.view.sketch.sketch_style import LINE, SMALL
+from compoundkin.view.sketch.shapes import Shape, ShapeGroup, Text, leaves, moved_shapes, shape_corners
+from compoundkin.view.sketch.sketch_style import LETTER, LINE, SMALL
 from compoundkin.view.sketch.vectors import VectorScale, vector_shapes
 
 if TYPE_CHECKING:
@@ -52,8 +52,8 @@ LARGEST = {8: 340.0, MOST: 222.0}
 LONGEST = 0.35
 # They are at least so wide, for their headings.
 NARROWEST = 200.0
-# Room above and below what a panel shows.
-ABOVE = 8.0
+# Room above and below what a panel shows, its letters too.
+ABOVE = 4.0
 # Of more than so many panels those of more than so many links have no numbers: their colours tell the groups.
 FEW_PANELS, FEW_LINKS = 8, 12
 
@@ -246,7 +246,7 @@ def _parts(panels: Sequence[_ConfigurationPanel], kinds: Sequence[str]) -> list[
     for first in range(0, len(panels), columns):
         # a row is as tall as what it shows, and its panels have the frame at one height
         row = slice(first, first + columns)
-        heights = [corner.imag for shapes in drawn[row] for corner in shape_corners(shapes)]
+        heights = [corner.imag for shapes in drawn[row] for corner in (*shape_corners(shapes), *_of_texts(shapes))]
         low, high = min(heights, default=0.0) - ABOVE, max(heights, default=0.0) + ABOVE
         for panel, lines, shapes in zip(panels[row], said[row], drawn[row], strict=True):
             top = complex(window.width / 2.0, LINE * 0.5)
@@ -257,6 +257,13 @@ def _parts(panels: Sequence[_ConfigurationPanel], kinds: Sequence[str]) -> list[
             part = ShapeGroup((*heads, *moved_shapes(shapes, 1j * (down - low))))
             parts.append(PicturePart((part,), window.width, high - low + down))
     return parts
+
+
+def _of_texts(shapes: Sequence[Shape]) -> Iterator[complex]:
+    """Yield the places above and below letters and numbers: headings keep clear of them."""
+    for shape in leaves(shapes):
+        if isinstance(shape, Text):
+            yield from (shape.at - LETTER / 2.0 * 1j, shape.at + LETTER / 2.0 * 1j)
 
 
 def _window(panels: Sequence[_ConfigurationPanel], scenes: Sequence[Scene], largest: float) -> Window:
