@@ -20,7 +20,7 @@ from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Places, between, extremes, places_of_jumps
 from compoundkin.kinematics.extremes.stretches import SAME_PLACE, Stretches, stretches_of
 from compoundkin.kinematics.quantities import quantity
-from compoundkin.model.attributes import EFFORT, POWER, TIME, derivative_order, motion_figure
+from compoundkin.model.attributes import EFFORT, FLANK, LENGTH, OF_FORCES, POWER, TIME, derivative_order, motion_figure
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.canvas import AxisScales, PointLabel, set_range, value_text
 from compoundkin.view.plot.plot_style import Plot
@@ -472,12 +472,31 @@ class PlottedCurve:
         across, up = (np.concatenate([row[kept], one])[order] for row, one in zip((x, y), new, strict=True))
         there = np.concatenate([poses[kept], place])[order]
         jumps = (np.diff(there) <= SAME_PLACE) & (np.abs(np.diff(up)) > JUMP * curve.scale)
+        jumps |= _switches(curve, up)
         after = np.flatnonzero(jumps) + 1
         return curve.parted(self.x, np.insert(across, after, across[after]), np.insert(up, after, np.nan))
 
     def _values(self, curve: Plotted) -> Number:
         found = np.asarray(quantity(self.solved, curve.name).values)
         return np.broadcast_to(_displayed_values(curve, found).reshape(-1), self.more.at.place.shape)
+
+
+# Loads that act one way only set in and end between two places: there a force changes by so many times more than
+# before and after, and by this part of its range.
+SUDDEN, LARGE = 20.0, 0.02
+
+
+def _switches(curve: Plotted, up: Number) -> Number:
+    """Return between which places a force is switched on or off, or changes flanks."""
+    steps = np.nan_to_num(np.abs(np.diff(up)))
+    word = curve.name.removesuffix(f".{LENGTH}").rpartition(".")[2]
+    if word == FLANK:
+        return steps > 0.0
+    if curve.dimension not in OF_FORCES or len(steps) < 3:
+        return np.zeros(len(steps), dtype=bool)
+    beside = np.maximum(np.append(steps[1:], steps[-2]), np.append(steps[1], steps[:-1]))
+    known = up[np.isfinite(up)]
+    return (steps > SUDDEN * beside) & (steps > LARGE * float(np.ptp(known)))
 
 
 # Curves of fewer poses than these are solved between them, so that they are smooth; many designs together no more often

@@ -23,7 +23,16 @@ from compoundkin.structure import Structure
 from compoundkin.view.sketch.kinematic_sketch import by_links, ghost_shapes, in_layers, layered, window_on
 from compoundkin.view.sketch.labels import label_shapes, labels_of, placed
 from compoundkin.view.sketch.painter import Painter
-from compoundkin.view.sketch.picture import GAP, NARROW, PAPER_WIDTH, Picture, PicturePart, in_rows, with_notes
+from compoundkin.view.sketch.picture import (
+    GAP,
+    NARROW,
+    PAPER_WIDTH,
+    Picture,
+    PicturePart,
+    in_rows,
+    with_minus_signs,
+    with_notes,
+)
 from compoundkin.view.sketch.picture_options import (
     Drawable,
     PictureOptions,
@@ -238,7 +247,7 @@ def _parts(panels: Sequence[_ConfigurationPanel], kinds: Sequence[str]) -> list[
     window = _window(panels, scenes, next(size for count, size in LARGEST.items() if len(panels) <= count))
     across = int(window.width / (SMALL * NARROW))
     wrap = textwrap.TextWrapper(across, break_on_hyphens=False, break_long_words=False).wrap
-    said = [wrap(panel.said.replace(BETWEEN, " /\u00a0")) for panel in panels]
+    said = [wrap(with_minus_signs(panel.said).replace(BETWEEN, " /\u00a0")) for panel in panels]
     down = LINE * (1 + max(map(len, said)))
     drawn = [_drawn(panel, window, kinds) for panel in panels]
     columns = max(1, int((PAPER_WIDTH + GAP) // (window.width + GAP)))

@@ -5,6 +5,7 @@ Several parts stand side by side in rows.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -159,6 +160,15 @@ def legible_size(width: float, height: float, size: float | None) -> float:
     return round(NATURAL * max(width, height), 1) if size is None else size
 
 
+def with_minus_signs(text: str) -> str:
+    """Return a text with the sign of minus before its numbers, hyphens in names as they are.
+
+    >>> with_minus_signs("rod-1 from -88.98 to 88.98")
+    'rod-1 from −88.98 to 88.98'
+    """
+    return re.sub(r"(?<![\w)\]])-(?=\d)", "−", text)
+
+
 def lines_of_text(parts: Sequence[str], width: float) -> list[str]:
     """Break parts of text in lines no wider than this, in picture units.
 
@@ -166,7 +176,7 @@ def lines_of_text(parts: Sequence[str], width: float) -> list[str]:
     ['1 frame', '2 crank']
     """
     lines: list[str] = []
-    for part in parts:
+    for part in map(with_minus_signs, parts):
         longer = f"{lines[-1]}{SEPARATOR}{part}" if lines else part
         if lines and len(longer) * SMALL * NARROW <= width:
             lines[-1] = longer

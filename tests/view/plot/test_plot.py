@@ -468,3 +468,15 @@ def test_efforts_have_their_mean() -> None:
     (axes,) = ck.plot(crank_forces(), "crank.effort").figure.axes
     dashed = [line for line in axes.get_lines() if str(line.get_label()).startswith("mean")]
     assert [line.get_label() for line in dashed] == ["mean 0"]
+
+
+def test_no_line_joins_what_a_load_is_before_and_after_it_acts() -> None:
+    """The stone presses while the jaw closes: between its dead points, 90 and 270 degrees to half a step."""
+    (effort, force) = ck.plot(ck.force_analysis(solved("jaw-crusher-loaded")), "T.velocity.x", "D.force.x").figure.axes
+    ((x, y),) = curves(force).values()
+    breaks = np.flatnonzero(np.isnan(y))
+    ((at, velocity),) = curves(effort).values()
+    signs = at[:-1][np.sign(velocity[:-1]) * np.sign(velocity[1:]) < 0]
+    np.testing.assert_allclose(x[breaks], signs, atol=3.0)
+    assert len(breaks) == 2
+    assert np.nanmax(np.abs(np.diff(y))) < 0.1 * np.nanmax(np.abs(y))
