@@ -35,7 +35,8 @@ ABOUT, GROUPS = "about", "groups"
 OF_DIMENSIONS = frozenset((
     "links", "circuits", "outputs", "performance", "checks", "published", "gaps", "forces", "force-checks", "centres",
     "secondary", "velocities", "figures", "limits", "toggles", "changes", "cams", "configurations", "branches",
-    "equations", "newton", "constants", "states", "simulation", "unknowns", "interference",
+    "equations", "newton", "constants", "states", "simulation", "unknowns", "interference", "motors",
+    "singularities",
 ))  # fmt: skip
 
 

@@ -21,6 +21,7 @@ from compoundkin.kinematics.quantities import Quantity, quantity
 from compoundkin.model.attributes import (
     ANGULAR_ACCELERATION,
     ANGULAR_VELOCITY,
+    OF_FORCES,
     TIME,
     coordinate_dimension,
     derivative_order,
@@ -175,7 +176,15 @@ class MotionData:
     def _quantity(self, found: Quantity, packed: Any) -> dict[str, Any]:
         floor, values = self.sample.floor(found), np.asarray(found.values)[self.chosen]
         parts = {name: packed(part) for name, part in component_values(values, floor).items()}
-        return {"name": found.name, "unit": found.unit, "order": found.order, "floor": floor, "parts": parts}
+        switched = {"switched": True} if found.dimension in OF_FORCES else {}
+        return {
+            "name": found.name,
+            "unit": found.unit,
+            "order": found.order,
+            "floor": floor,
+            "parts": parts,
+            **switched,
+        }
 
     @cached_property
     def _numbers(self) -> Mapping[str, int]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -107,6 +108,30 @@ def test_forces_follow_changed_dimensions(name: str, changes: dict[str, float], 
         assert np.allclose((force[0] + 1j * force[1])[good], one.force[good], rtol=0, atol=1e-8 * scale)
         assert np.allclose((at[0] + 1j * at[1])[good], one.at[good], rtol=0, atol=1e-9 * forces.motion.size)
         assert np.allclose(turning[good], one.moment[good], rtol=0, atol=1e-8 * scale * forces.motion.size)
+    assert view.complaints == []
+
+
+# What holds whatever the dimensions are, or follows them.
+OF_STRUCTURE = {"about", "dimensions", "motion", "pairs", "mobility", "chain", "loops", "groups", "drivers"}
+
+
+def test_sections_of_forces_and_motors_are_of_the_original_dimensions(made: Any) -> None:
+    html = made("jaw-crusher-loaded").read_text("utf-8")
+    sections = dict(re.findall(r'<section id="([a-z-]+)"([^>]*)>', html))
+    assert {"forces", "motors"} <= set(sections)
+    assert {key for key, rest in sections.items() if "data-depends" not in rest} == OF_STRUCTURE
+
+
+def test_plots_have_no_line_from_before_a_load_acts_to_after(made: Any, opened: Any) -> None:
+    """The stone presses while the jaw closes: the curve of a force has three pieces, that of a velocity one."""
+    view = opened(made("jaw-crusher-loaded"))
+    found = view.value("""() => Object.fromEntries([...compoundkin.players[0].outputs].map(({ name }) => {
+        const quantity = compoundkin.quantity(compoundkin.players[0], name);
+        const own = Array.from(quantity.parts.x ?? quantity.parts[""]);
+        return [name, [quantity.switched ?? false, compoundkin.Curve.switches([own]).size]];
+    }))""")  # fmt: skip
+    assert found["D.force"] == [True, 2]
+    assert found["T.velocity"] == [False, 0]
     assert view.complaints == []
 
 

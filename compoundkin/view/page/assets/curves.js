@@ -8,6 +8,7 @@
   const SAME = 1e-6; // of the way from pose to pose: nearer, a place is the pose
   const SEEN = 3e-7; // values are packed with seven digits: a range that is smaller is none
   const STEPS = 6; // lines for a cubic on an axis that is not even
+  const SUDDEN = 20, LARGE = 0.02; // a step so many times those beside it, and this part of the range, is a switch
   const ALIKE = 0.9, FINE = 16; // vectors that turn more from pose to pose have so many places between for their length
 
   // --- polynomials through some knots, by Lagrange's formula ---------------------------------------------------------
@@ -33,7 +34,7 @@
   // --- from poses to smooth pieces -----------------------------------------------------------------------------------
   const run = () => ({ knots: [], before: null, after: null });
   // jumps are {place, begins, x, y}: y may be null; values that are not numbers part a curve
-  const runsOf = (xs, ys, slopes, jumps) => {
+  const runsOf = (xs, ys, slopes, jumps, cuts) => {
     const runs = [];
     let own = run();
     const close = () => { if (own.knots.length) runs.push(own); own = run(); };
@@ -48,7 +49,7 @@
       pass(k - SAME);
       if (jumps.some((jump) => Math.abs(jump.place - k) <= SAME)) { pass(k + SAME); return; }
       if (Number.isFinite(ys[k])) own.knots.push({ x, y: ys[k], slope: slopes ? slopes[k] : NaN });
-      else close();
+      if (!Number.isFinite(ys[k]) || cuts.has(k)) close();
     });
     pass(Infinity);
     close();
@@ -93,8 +94,8 @@
 
   // One curve: values over places that grow; `slopes` as far as they are known, `jumps`, `extremes` found elsewhere.
   class Curve {
-    constructor(xs, ys, { slopes = null, jumps = [], extremes = [], floor = 0 } = {}) {
-      this.pieces = runsOf(xs, ys, slopes, jumps).map((one) => pieceOf(one, extremes));
+    constructor(xs, ys, { slopes = null, jumps = [], extremes = [], floor = 0, cuts = new Set() } = {}) {
+      this.pieces = runsOf(xs, ys, slopes, jumps, cuts).map((one) => pieceOf(one, extremes));
       this.floor = floor;
     }
     // the first lowest and the first highest place of all; none where nothing is known
@@ -174,6 +175,19 @@
       return pieceOf({ knots }, extremes);
     });
     return curve;
+  };
+  // after which places a force is switched on or off, as by loads that act one way only, in any of its parts
+  Curve.switches = (rows) => {
+    const cuts = new Set();
+    for (const ys of rows) {
+      const known = ys.filter(Number.isFinite), range = Math.max(...known) - Math.min(...known);
+      const steps = ys.slice(1).map((y, k) => Math.abs(y - ys[k]));
+      steps.forEach((step, k) => {
+        const beside = Math.max(steps[k - 1] ?? steps[k + 1], steps[k + 1] ?? steps[k - 1]);
+        if (step > SUDDEN * beside && step > LARGE * range) cuts.add(k);
+      });
+    }
+    return cuts;
   };
   page.Curve = Curve;
 })();

@@ -51,8 +51,10 @@
       const { parts, slopes, floor } = this.quantity;
       const ordered = (values) => values && axis.order.map((k) => values[k]);
       const isOwn = !this.player.design?.isChanged;
+      const own = Object.entries(parts).filter(([part]) => part !== "length").map(([, values]) => Array.from(ordered(values)));
+      const cuts = this.quantity.switched ? page.Curve.switches(own) : new Set();
       const curve = (part, ends) => new page.Curve(axis.xs, ordered(parts[part]), {
-        slopes: ordered(slopes[part]), jumps: axis.jumps(this.name, part, isOwn), floor, extremes: ends,
+        cuts, slopes: ordered(slopes[part]), jumps: axis.jumps(this.name, part, isOwn), floor, extremes: ends,
       });
       this.curves = Object.keys(parts).map((part) => {
         const ends = (isOwn && this.extremes.get(part ? `${this.name}.${part}` : this.name)) || [];
@@ -87,7 +89,7 @@
       const { parts, unit } = this.quantity;
       const line = { stroke: () => colour("rule"), width: 1 };
       const style = { stroke: () => colour("quiet"), grid: line, ticks: line, font: FONT, labelFont: FONT, labelSize: 20 };
-      const wide = (u, values) => (values || []).map((v) => (v === null ? "" : page.written(v)));
+      const wide = (u, values) => (values || []).map((v) => (v === null ? "" : page.written(v).replace(/\.?0*e\+?/, "e")));
       const curve = (k) => (u) => ({
         stroke: this.drawn(u, this.curves[k]), fill: null, clip: null, band: null, gaps: null, flags: 1,
       });
