@@ -38,7 +38,13 @@ from compoundkin.model.pairs.symbols import Groove, Outline, Wheel
 from compoundkin.structure import Fault, Structure, decompose
 from compoundkin.studio.edited_document import Document, Placement
 from compoundkin.studio.edits import edited
-from compoundkin.studio.findings import OF_FILES, OF_MECHANISMS, DrivenStructure, chosen_configuration
+from compoundkin.studio.findings import (
+    OF_FILES,
+    OF_MECHANISMS,
+    DrivenStructure,
+    changed_dimensions,
+    chosen_configuration,
+)
 
 Reply: TypeAlias = dict[str, Any]
 
@@ -669,9 +675,19 @@ def _edit(document: str, question: Mapping[str, Any]) -> Reply:
         wanted["drawn"] = chosen_configuration(_shown(reading), str(edit.get("name")), pose)
         wanted.pop("modes", None)
         made: Reply = {}
+    elif edit.get("do") == "dimensions":
+        made = {}
+        changed_dimensions(_shown(reading), wanted, _numbers(edit.get("values")), pose)
     else:
         made = edited(wanted, edit, drawing)
     return {"text": toml_text.changed(document, wanted, syntax_of(document)), "made": made, "problems": []}
+
+
+def _numbers(values: Any) -> dict[str, float]:
+    """Return numbers by name out of a question. Raises InvalidInput."""
+    if isinstance(values, dict) and all(type(one) in (int, float) and isfinite(one) for one in values.values()):
+        return {str(name): float(one) for name, one in values.items()}
+    raise InvalidInput(Problem("values", "these are no numbers by name", 'give {"crank.B.x": 20, ...}'))
 
 
 def _offers(document: str, question: Mapping[str, Any]) -> Reply:

@@ -22,7 +22,7 @@ from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggesti
 from compoundkin.base.suffixes import SUFFIXES, suffix_for
 from compoundkin.base.suffixes import Kind as FileKind
 from compoundkin.kinematics import Motion, solve
-from compoundkin.model.attributes import TABULATED, VELOCITY, Kind
+from compoundkin.model.attributes import AXES, TABULATED, VELOCITY, Kind
 from compoundkin.model.geometry import FRAME
 from compoundkin.structure import Structure
 
@@ -61,6 +61,56 @@ class DrivenStructure:
             raise InvalidInput(Problem("", "it cannot be assembled", "mend its dimensions"))
         k = pose if isinstance(pose, int) and 0 <= pose < self.motion.failed.shape[1] else int(good[0])
         return {name: float(np.broadcast_to(v[0], self.motion.failed.shape)[0, k]) for name, v in drives.items()}
+
+
+# --- dimensions ---------------------------------------------------------------------------------------------
+
+
+def dimensions(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
+    """Reply the program by which a browser solves the mechanism again, with its dimensions, as live pages have it."""
+    from compoundkin.view.page.live.live_data import LiveData
+
+    if not shown.structure.mechanism.drives or shown.structure.faults:
+        raise InvalidInput(Problem("", "it does not move yet", "mend what is missing"))
+    motion = solve(shown.structure, shown.values, order=0)
+    poses = motion.failed.shape[1]
+    live = LiveData(motion, np.arange(poses), list(motion.mechanism.links), ()).data
+    start = int(np.argmax(motion.failed[0] == 0))
+    return {"live": {**live, "toml": None}, "poses": poses, "start": start, "problems": []}
+
+
+def changed_dimensions(
+    shown: DrivenStructure, document: dict[str, Any], values: Mapping[str, float], pose: object
+) -> None:
+    """Change dimensions in a document: coordinates of links that have some, and the drawing.
+
+    Links of letters alone take theirs off the drawing: it becomes that of the pose that is shown, all other dimensions
+    as they are. Raises InvalidInput where it cannot be assembled so, UnknownName for what is no dimension.
+    """
+    from compoundkin.programs.dimensions import with_dimensions
+
+    mechanism = shown.structure.mechanism
+    changed = with_dimensions(mechanism, values)
+    digits = EXACT - floor(log10(mechanism.geometry.size))
+
+    def written(place: complex) -> list[float]:
+        return [round(place.real, digits) + 0.0, round(place.imag, digits) + 0.0]
+
+    for link in dict.fromkeys(name.partition(".")[0] for name in values):
+        points = document["links"][link].get("points")
+        for letter in points if isinstance(points, dict) else ():
+            if any(f"{link}.{letter}.{axis}" in values for axis in AXES):
+                points[letter] = written(complex(np.ravel(changed.geometry.points[link][letter])[0]))
+    if "drawn" not in document:
+        return
+    motion = solve(changed, shown.at(pose), order=0)
+    if motion.failed.any():
+        raise InvalidInput(
+            Problem("", "with that it cannot be assembled at this pose", "go to another pose, or take less")
+        )
+    for letter in document["drawn"]:
+        if letter in motion.points:
+            document["drawn"][letter] = written(complex(np.ravel(motion.points[letter].position)[0]))
 
 
 # --- reports ------------------------------------------------------------------------------------------------
@@ -290,6 +340,7 @@ def opened(question: Mapping[str, Any]) -> Reply:
 
 # Questions about what moves, and those for which no mechanism is needed.
 OF_MECHANISMS: Mapping[str, Callable[[DrivenStructure, Mapping[str, Any]], Reply]] = {
+    "dimensions": dimensions,
     "results": results,
     "plots": plots,
     "configurations": every_configuration,

@@ -15,7 +15,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.errors import missing_extra
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studio.answers import answer
-from compoundkin.studio.server import ASSETS, PAGE, message_in
+from compoundkin.studio.server import ASSETS, PAGE, message_in, solving_script
 
 MODULE = "widget.js"
 # What a window begins with that is given nothing.
@@ -111,7 +111,7 @@ def bundled() -> str:
     _add(MODULE, modules)
     constants = f"const STYLE = {json.dumps(style)}, MARKUP = {json.dumps(markup)}, modules = {{}};\n"
     whole = "\n".join(f"modules[{json.dumps(name)}] = (() => {{\n{text}}})();" for name, text in modules.items())
-    return f"{constants}{whole}\nexport default modules[{json.dumps(MODULE)}].default;\n"
+    return f"{solving_script()}\n{constants}{whole}\nexport default modules[{json.dumps(MODULE)}].default;\n"
 
 
 _IMPORT = re.compile(r'^import (\{[^}]*\}) from "\./([\w.]+)";$', re.MULTILINE)

@@ -344,9 +344,17 @@ def message_in(text: str) -> Message | None:
     return None
 
 
+def solving_script() -> str:
+    """Return the scripts of live pages that solve a mechanism again, and that tell its dimensions."""
+    from compoundkin.view.page.html_document import asset
+    from compoundkin.view.page.live.live_assets import FIRST_SCRIPTS, PATH_SCRIPTS, ROW_SCRIPT
+
+    return "\n".join(map(asset, (*FIRST_SCRIPTS, *PATH_SCRIPTS, ROW_SCRIPT)))
+
+
 def _assets() -> Mapping[str, str]:
     """Return the files of the page by name: its own, and the colours that all pages have."""
     from compoundkin.view.page.html_document import asset, page_palette
 
     own = {path.name: path.read_text(encoding="utf-8") for path in sorted(ASSETS.iterdir()) if path.is_file()}
-    return {**own, "palette.css": page_palette(), "theme.js": asset("theme.js")}
+    return {**own, "palette.css": page_palette(), "theme.js": asset("theme.js"), "solving.js": solving_script()}

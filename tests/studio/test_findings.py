@@ -137,3 +137,29 @@ def test_nothing_of_this_machine_is_opened(tmp_path: Any) -> None:
 def test_what_does_not_move_yet_is_told_so() -> None:
     for ask in ("plots", "configurations", "circuits", "overlays"):
         assert answer(START, {"ask": ask, "names": []})["problems"], ask
+
+
+@pytest.mark.parametrize("pose", [None, 70])
+@pytest.mark.parametrize("drawn", [True, False])
+def test_one_dimension_is_changed_and_no_other(drawn: bool, pose: int | None) -> None:
+    text = edited(START, *FOUR_BAR) if drawn else answer("", {"ask": "open", "name": "four-bar:60,20,50,40"})["text"]
+    name = "bar2" if drawn else "coupler"
+    before = loads(text).geometry.points
+    changed = edited(text, {"do": "dimensions", "values": {f"{name}.C.x": 47.5}}, pose=pose)
+    after = loads(changed).geometry.points
+    for link, points in before.items():
+        first, *others = points
+        for letter in others:
+            lengths = [abs(np.ravel(one[link][letter] - one[link][first])[0]) for one in (before, after)]
+            wanted = 47.5 if link == name else lengths[0]
+            assert lengths[1] == pytest.approx(wanted, abs=1e-9)
+    if drawn:
+        assert changed.startswith(START)
+
+
+def test_dimensions_that_cannot_be_are_refused() -> None:
+    text = edited(START, *FOUR_BAR)
+    for values in ({"bar2.C.x": 500}, {"bar2.Q.x": 5}, {"bar2.C.x": "5"}, {"bar2.C.x": float("nan")}, None):
+        found = answer(text, {"ask": "edit", "edit": {"do": "dimensions", "values": values}})
+        assert found["text"] == text
+        assert found["problems"], values

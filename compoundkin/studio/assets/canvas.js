@@ -64,7 +64,8 @@ export class Canvas {
     this.photo = null;
     this.layers = ["below", "traces", "guides", "shapes", "links", "marks", "pins", "letters", "above"];
     for (const name of this.layers) this[name] = made("g", { class: `layer-${name}` }, svg);
-    // who draws above the drawing
+    // who changes what is drawn before it is, and who draws above it
+    this.before = [];
     this.after = [];
     this.sized = new ResizeObserver(() => this.draw());
     this.sized.observe(svg);
@@ -271,6 +272,7 @@ export class Canvas {
   }
 
   draw() {
+    for (const one of this.before) one();
     this.#draw();
     for (const one of this.after) one();
   }

@@ -1,5 +1,6 @@
 // The window: a history of whole documents, the wire that questions go over, the panels. It draws what it is told.
 import { Canvas } from "./canvas.js";
+import { Dimensions } from "./dimensions.js";
 import { element, parts } from "./elements.js";
 import { Gestures } from "./gestures.js";
 import { Results } from "./results.js";
@@ -24,6 +25,7 @@ export class Studio {
     this.isFitted = false;
     this.before = kept.before ?? null;
     this.results = new Results(root, this);
+    this.dimensions = new Dimensions(root, this);
     this.#listen();
     this.wire = wire({ opened: (reply) => this.#open(reply), lost: (wasOpen) => this.#lost(wasOpen) });
   }
@@ -34,6 +36,7 @@ export class Studio {
     clearTimeout(this.pause);
     this.ended.abort();
     this.results.unmount();
+    this.dimensions.unmount();
     this.canvas.unmount();
     this.wire.end();
   }
@@ -121,10 +124,11 @@ export class Studio {
   }
 
   // an edit follows the one before it, of whose text it is
-  edit(edit) {
+  edit(edit, refused = () => {}) {
     const pose = this.canvas.pose;
     if (pose !== null && !this.canvas.isShown(pose)) {
       this.say("Not done: it is not assembled at this pose; go to one that is, or press As drawn");
+      refused();
       return this.queue;
     }
     this.edits += 1;
@@ -134,6 +138,7 @@ export class Studio {
       if (reply.problems?.length) {
         const [{ what, remedy }] = reply.problems;
         this.say(`Not done: ${what}${remedy ? `; ${remedy}` : ""}`);
+        refused();
         return;
       }
       const { made } = reply;
@@ -238,6 +243,7 @@ export class Studio {
     this.#driver();
     this.canvas.draw();
     this.shown = text;
+    this.dimensions.renew();
     this.results.renew();
   }
 

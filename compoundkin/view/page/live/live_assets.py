@@ -39,8 +39,9 @@ SCRIPTS = (
 FIGURES = ("live/line_searches.js", "live/course.js", "live/figures.js")
 STYLES = ("live/live.css",)
 # What a page with a panel of dimensions has after all others, which hear of the dimensions in its address.
+ROW_SCRIPT = "live/rows.js"
 PANEL_SCRIPTS = (
-    "live/rows.js", "live/assembled_range.js", "live/fragment.js", "live/panel.js", "live/miniature.js",
+    ROW_SCRIPT, "live/assembled_range.js", "live/fragment.js", "live/panel.js", "live/miniature.js",
     "live/exported.js", "live/share.js",
 )  # fmt: skip
 PANEL_STYLES = ("live/panel.css",)
