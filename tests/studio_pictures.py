@@ -34,7 +34,7 @@ from tests.view.page.test_studio import (
 FOLDER = Path(__file__).parents[1] / "docs" / "figures"
 SIZE = {"width": 1400, "height": 800}
 # The film: its width in pixels, milliseconds of a frame, of a rest.
-WIDTH, FRAME, REST = 860, 70, 900
+WIDTH, FRAME, REST = 860, 90, 1100
 UNCHOSEN = (
     "() => { studio.canvas.chosen = studio.canvas.over = null; studio.canvas.picked.clear(); studio.canvas.draw(); }"
 )
@@ -240,7 +240,7 @@ class Film:
 
     def save(self, path: Path) -> None:
         first, *others = self.frames
-        how = {"quality": 62, "method": 6, "minimize_size": True}
+        how = {"quality": 62, "method": 4, "minimize_size": True}
         first.save(path, save_all=True, append_images=others, duration=self.times, loop=0, **how)
 
 

@@ -531,7 +531,8 @@ export class Gestures {
     box.style.top = `${Math.max(4, Math.min(around.top + at[1], innerHeight - box.offsetHeight - 4))}px`;
     this.opened = box;
     box.firstChild?.focus({ preventScroll: true });
-    this.#away = (event) => { if (!box.contains(event.target)) this.closeMenu(); };
+    // in a shadow root the target is its host
+    this.#away = (event) => { if (!event.composedPath().includes(box)) this.closeMenu(); };
     document.addEventListener("pointerdown", this.#away, true);
   }
 
@@ -673,11 +674,13 @@ export class Gestures {
   // locks and traces are kept with the window, the photograph in the browser's store: over a reload
   async #remember() {
     const { canvas, studio } = this;
+    // a notebook has no window of its own to keep it for
+    if (!studio.token) return;
     try { sessionStorage.setItem("compoundkin-studio-canvas", JSON.stringify({ token: studio.token, locks: canvas.locks, traced: [...canvas.toggled] })); } catch { /* full, or forbidden */ }
     try {
       const store = await this.#store("readwrite");
-      if (canvas.photo) store.put(canvas.photo, "photo");
-      else store.delete("photo");
+      if (canvas.photo) store.put(canvas.photo, studio.token);
+      else store.delete(studio.token);
       await new Promise((resolve, reject) => Object.assign(store.transaction, { oncomplete: resolve, onerror: reject, onabort: reject }));
     } catch { if (canvas.photo) studio.say("The photograph cannot be kept over a reload in this browser"); }
   }
@@ -699,7 +702,7 @@ export class Gestures {
       if (token && token === this.studio.token) [canvas.locks, canvas.toggled] = [locks, new Set(traced)];
     } catch { /* nothing is kept */ }
     try {
-      const asked = (await this.#store("readonly")).get("photo");
+      const asked = (await this.#store("readonly")).get(this.studio.token);
       asked.onsuccess = () => { if (asked.result && !canvas.photo) { canvas.photo = asked.result; canvas.draw(); } };
     } catch { /* no store */ }
   }

@@ -106,6 +106,8 @@ export class Studio {
 
   // one entry for each gesture
   put(text, isTyped = false) {
+    // a browser's field has one kind of line ends, a file from Windows another
+    if (isTyped && this.text.includes("\r\n")) text = text.replaceAll(/\r?\n/g, "\r\n");
     if (text === this.text) return;
     const isOn = isTyped && performance.now() - this.typed < TYPING && this.place;
     this.history.splice(this.place + (isOn ? 0 : 1), Infinity, text);
@@ -186,7 +188,7 @@ export class Studio {
   // --- the waves
 
   #show(isTyped = false) {
-    if (!isTyped || this.part("text").value !== this.text) this.part("text").value = this.text;
+    if (!isTyped || this.part("text").value !== this.text.replaceAll("\r\n", "\n")) this.part("text").value = this.text;
     this.#state();
     this.#keep();
     this.halt();

@@ -592,20 +592,34 @@ def test_by_the_keyboard_alone(window: Any) -> None:
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_it_is_narrow_enough_and_accessible(window: Any, scheme: str) -> None:
+    """A finger draws a bar, opens the menu and moves the view; the lines of a text from Windows keep their ends."""
     axe = pytest.importorskip("axe_playwright_python.sync_playwright")
-    seen = window(size=(390, 800), color_scheme=scheme, has_touch=True)
+    seen = window(START.replace("\n", "\r\n"), size=(390, 800), color_scheme=scheme, has_touch=True)
     wire = seen.view.context.new_cdp_session(seen.view)
-    # a finger draws a bar
+
+    def touch(kind: str, *places: tuple[float, float]) -> None:
+        points = [dict(zip("xy", seen.at(place), strict=True), id=k) for k, place in enumerate(places)]
+        wire.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
     for kind, places in (
         ("touchStart", [(-80, 20)]),
         ("touchMove", [(0, 0)]),
         ("touchMove", [(60, -40)]),
         ("touchEnd", []),
     ):
-        points = [dict(zip("xy", seen.at(place), strict=True)) for place in places]
-        wire.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+        touch(kind, *places)
     seen.until("studio.text.includes('bar1')")
     seen.settle()
+    assert seen.text.count("\n") == seen.text.count("\r\n") > 5
+    before = seen.value("studio.canvas.view.scale")
+    touch("touchStart", (-60, 90))
+    touch("touchStart", (-60, 90), (60, 90))
+    touch("touchMove", (-120, 90), (120, 90))
+    touch("touchEnd")
+    assert seen.value("studio.canvas.view.scale") == pytest.approx(2 * before, rel=0.1)
+    touch("touchStart", seen.where("B"))
+    seen.view.locator(".menu").wait_for()
+    touch("touchEnd")
     assert seen.value("document.documentElement.scrollWidth") <= 390
     found = axe.Axe().run(seen.view)
     assert found.violations_count == 0, found.generate_report()
