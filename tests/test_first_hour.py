@@ -14,7 +14,7 @@ from click.testing import CliRunner, Result
 import compoundkin as ck
 from compoundkin.base.errors import OTHER_WORDS, ExplainsAttributes, nearest
 from compoundkin.cli import VERBS, cli
-from compoundkin.dimensional.tasks import read_task
+from compoundkin.dimensional.tasks import KEYS, read_task
 from compoundkin.files import loads
 
 FOUR_BAR = "four-bar:60,20,50,40"
@@ -280,6 +280,9 @@ def linkage() -> Any:
         (lambda: ck.load(FOUR_BAR), "compoundkin.linkages.four_bar(60,20,50,40)"),
         (lambda: ck.linkages.four_bar(60, 20, 50), "rocker is missing"),
         (lambda: ck.linkages.four_bar(60, 20, 50, 40, coupler_point=(1, 2)), "did you mean 'point'?"),
+        (lambda: ck.link("crank", AB=20), 'write link("crank", A=0, B=20)'),
+        (lambda: ck.study(linkage(), {"crank.B.x": (19, 21)}, 1000), "how many there are is count=1000"),  # type: ignore[arg-type]
+        (lambda: ck.solve(linkage())["roker"], "did you mean 'rocker'?"),
         (lambda: ck.linkages.four_bar(60, np.linspace(15, 20, 9), 50, 40), "with_dimensions(linkage"),
     ],
 )
@@ -304,3 +307,22 @@ def test_a_property_that_fails_keeps_its_own_error() -> None:
 
     with pytest.raises(AttributeError, match="inside"):
         Broken().value  # noqa: B018
+
+
+def test_a_motion_is_asked_by_any_name() -> None:
+    motion = ck.solve(linkage())
+    np.testing.assert_array_equal(motion["rocker"].angle, motion.links["rocker"].angle)
+    np.testing.assert_array_equal(motion["C"].velocity, motion.points["C"].velocity)
+    np.testing.assert_array_equal(motion["rocker.angular_velocity"], motion.links["rocker"].angular_velocity)
+    with pytest.raises(TypeError, match="not iterable"):
+        iter(motion)  # type: ignore[call-overload]
+
+
+def test_a_new_task_names_all_kinds_and_shows_a_curve(run: Run, tmp_path: Path) -> None:
+    assert run("new", "task", "-o", "task.toml").exit_code == 0
+    rest = (tmp_path / "task.toml").read_text().splitlines()
+    kinds = next(line for line in rest if line.startswith("task = "))
+    assert all(word in kinds for word in KEYS)
+    begin = next(k for k, line in enumerate(rest) if 'task = "curve"' in line)
+    shown = "\n".join(line.removeprefix("#").strip() for line in rest[begin : begin + 4])
+    assert read_task(tomllib.loads(f"format = 1\n{shown}"))[0].in_words == "a point along a closed curve of 8 points"

@@ -26,6 +26,10 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
+# The argument that says how many, which people write in the place of others.
+_COUNT = "count"
+
+
 def checked(function: Callable[P, R]) -> Callable[P, R]:
     """Return the function with its arguments checked against its annotations.
 
@@ -75,6 +79,9 @@ class _ArgumentTypes:
         """Raise InvalidInput for the first argument that does not fit."""
         for (name, form), value in zip(self.placed, args, strict=False):
             if form is not None and not form.fits(value):
+                if _COUNT in self.named and isinstance(value, int) and not isinstance(value, bool):
+                    what = f"{short_repr(value)} is no {form.called}"
+                    raise InvalidInput(Problem(name, what, f"{name} come here; how many there are is {_COUNT}={value}"))
                 raise refused(name, value, form)
         if self.more is not None:
             for value in args[len(self.placed) :]:

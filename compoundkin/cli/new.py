@@ -84,7 +84,7 @@ seed = 1
 TASK = """\
 # A task of synthesis. Find the mechanisms that do it with:  compoundkin synthesise @FILE@ --save found
 format = 1
-task = "poses"                  # or points, mixed, function, swing, stroke, dwell
+task = "poses"                  # or points, curve, mixed, function, swing, stroke, dwell
 link = "plate"                  # what the body is called that is guided through them
 poses = [[2.9, 0.1, -35], [2.5, 0.4, 12], [1.9, 0.5, 40]]      # x, y, degrees; three to five, more approximately
 
@@ -92,6 +92,13 @@ poses = [[2.9, 0.1, -35], [2.5, 0.4, 12], [1.9, 0.5, 40]]      # x, y, degrees; 
 #
 #   task = "points"
 #   points = [[10, 20], [15, 30], [25, 35], [35, 33], [45, 25], [50, 15]]
+#
+# Or it traces a drawn curve, eight points or more along it (of a file: compoundkin trace curve.svg):
+#
+#   task = "curve"
+#   points = [[0, 0], [20, -2], [40, -2], [60, 0], [55, 12], [40, 20], [20, 20], [5, 12]]
+#   closed = true
+#   links = 6
 
 [conditions]                    # may be left out
 transmission = 10               # degrees, at least

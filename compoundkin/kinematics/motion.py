@@ -23,7 +23,7 @@ from compoundkin.kinematics.curve.modes import GroupMode, modes_of
 from compoundkin.kinematics.derived.figures_of_forces import AsksForces
 from compoundkin.kinematics.driver_values import Inputs, PoseGrid, fit
 from compoundkin.kinematics.jacobian import Jacobian, jacobian_of
-from compoundkin.kinematics.quantities import Table, names_meant, table_of
+from compoundkin.kinematics.quantities import Table, names_meant, quantity, table_of
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.attributes import CATALOGUE, DERIVED
 from compoundkin.model.geometry import vector
@@ -53,6 +53,27 @@ class Motion(CopiesFields, DisplaysPicture, AsksForces, ExplainsAttributes):
     def mechanism(self) -> Mechanism:
         """The mechanism that was solved."""
         return self.structure.mechanism
+
+    def __getitem__(self, name: str) -> PointMotion | LinkMotion | PairMotion | Number:
+        """Return the motion of a point, link, pair or driver by its name, or the numbers of a quantity.
+
+        Raises UnknownName with the nearest.
+
+        >>> from compoundkin.model.elements import drive, link
+        >>> from compoundkin.kinematics import solve
+        >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=2), drive("crank"))
+        >>> motion = solve(crank, {"crank": [0.0]}, speed=3.0)
+        >>> motion["crank"].angular_velocity, motion["B.velocity"]
+        (array([3.]), array([0.+6.j]))
+        """
+        for kind in (self.links, self.points, self.pairs, self.drives):
+            if name in kind:
+                return kind[name]
+        found: Number = quantity(self, name).values
+        return found
+
+    # so that what is no sequence is not taken for one
+    __iter__: ClassVar[None] = None
 
     def _instead(self, name: str) -> str:
         kinds = [kind for kind in ("links", "points", "pairs", "drives") if name in getattr(self, kind)]

@@ -5,6 +5,7 @@ A driver prescribes the coordinate of a pair, or the motion of a point or of a l
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, TypeAlias, overload
@@ -231,6 +232,12 @@ def link(name: str, *letters: str, **points: Any) -> Link:
         first, second = (*letters, "A", "B")[:2] if len(letters) == 2 else ("A", "B")
         what, shown = "a link has no length of its own: its points say it", short_repr(points["length"])
         raise InvalidMechanism(Problem(f"links.{name}", what, f'write link("{name}", {first}=0, {second}={shown})'))
+    if len(points) == 1 and (found := re.fullmatch("([A-Z])([A-Z])", next(iter(points)))):
+        (ends, value), (first, second) = next(iter(points.items())), found.groups()
+        if isinstance(value, int | float) and value:
+            what = f"{ends!r} would be a single point, not the length from {first} to {second}"
+            remedy = f'write link("{name}", {first}=0, {second}={short_repr(value)})'
+            raise InvalidMechanism(Problem(f"links.{name}", what, remedy))
     both = [letter for letter in letters if letter in points]
     if both or (letters and points) or len(set(letters)) < len(letters):
         what = "points are given twice, or partly as drawn"

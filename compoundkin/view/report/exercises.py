@@ -10,6 +10,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +18,7 @@ import numpy as np
 
 from compoundkin.analysis.equations.loop_equations import loop_equations
 from compoundkin.base.arguments import checked
-from compoundkin.base.arrays import degrees
+from compoundkin.base.arrays import TURN, degrees
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.base.suffixes import suffix_for
 from compoundkin.files.atomic import new_folder
@@ -55,6 +56,8 @@ if TYPE_CHECKING:
 KINDS = ("mobility", "groups", "positions", "velocities", "accelerations", "forces")
 # A variant is sought this often before it is given up.
 TRIALS = 200
+# After so many of them strokes may end before the given ones, by the rest of this share of the poses.
+WHOLE_TRIALS, LEAST_SHARE = 20, 0.5
 # Poses of the cycle at which a variant must assemble where the given mechanism does.
 CYCLE = 73
 # Angles nearer to a multiple of a right angle (degrees), and links nearer to parallel, are special cases.
@@ -288,6 +291,9 @@ class _Template:
             raise InvalidInput(Problem(mechanism.title, "it has several designs", "give one"))
         self.stated = StatedDimensions(mechanism, self.motion.inputs.ends)
         self.is_whole = bool(self.motion.assembled.all())
+        # where no driver turns fully, as with cylinders, few variants reach as far at both ends of all strokes
+        turns = (one.is_angle and np.ptp(one.value) >= TURN * (1.0 - ROUNDING) for one in self.motion.drives.values())
+        self.least_share = 1.0 if any(turns) else LEAST_SHARE
         self.varied: list[dict[str, float]] = []
         fixed: list[str] = []
         for equal in self._equal_lengths():
@@ -320,15 +326,15 @@ class _Template:
         free = free_dimensions(self.stated, list(values))
         return mechanism_with(self.stated, {one: values[one.name] for one in free})
 
-    def solved(self, values: Mapping[str, float]) -> Motion | None:
-        """Return the motion with other lengths over the cycle; None where less of it assembles."""
+    def solved(self, values: Mapping[str, float], share: float = 1.0) -> Motion | None:
+        """Return the motion with other lengths over the cycle; None where less of it assembles than a share."""
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 motion = solve(self.changed(values))
         except CompoundkinError:
             return None
-        enough = motion.assembled.all() if self.is_whole else motion.assembled.any()
+        enough = np.mean(motion.assembled) >= share if self.is_whole else motion.assembled.any()
         return motion if enough else None
 
 
@@ -352,7 +358,8 @@ def _variant(template: _Template, seed: int, number: int, kinds: Sequence[str]) 
     for trial in range(TRIALS):
         factors = 1.0 + template.vary * rng.uniform(-1.0, 1.0, len(template.varied))
         values = {n: printed(v * f) for own, f in zip(template.varied, factors, strict=True) for n, v in own.items()}
-        cycle = template.solved(values) if values else template.motion
+        share = 1.0 if trial < WHOLE_TRIALS else template.least_share
+        cycle = template.solved(values, share) if values else template.motion
         place, pace = rng.uniform(), rng.uniform(-1.0, 1.0)
         if cycle is None:
             reason = "it does not assemble wherever the given one does"
@@ -389,11 +396,22 @@ def _at_pose(mechanism: Mechanism, cycle: Motion, place: float, pace: float, var
     return motion if motion.assembled.all() else None
 
 
+def _shortest_arm(mechanism: Mechanism) -> float:
+    """Return the least distance of two points of a link: what a cylinder turns may turn as fast as about that arm."""
+    size = mechanism.geometry.size
+    gaps = (
+        abs(complex(np.ravel(one)[0]) - complex(np.ravel(other)[0]))
+        for own in mechanism.geometry.points.values()
+        for one, other in combinations(own.values(), 2)
+    )
+    return min((gap for gap in gaps if gap > ROUNDING * size), default=size)
+
+
 def _special(motion: Motion, strict: bool) -> str:
     """Return what is special about a pose, "" where nothing is: what two students could read off the figure."""
     rates = {name: float(np.ravel(link.angular_velocity)[0]) for name, link in motion.links.items()}
-    size = motion.mechanism.geometry.size
-    driven = max(abs(float(np.ravel(one.rate)[0])) / (1.0 if one.is_angle else size) for one in motion.drives.values())
+    arm = _shortest_arm(motion.mechanism)
+    driven = max(abs(float(np.ravel(one.rate)[0])) / (1.0 if one.is_angle else arm) for one in motion.drives.values())
     if not all(np.isfinite(rate) and abs(rate) <= FASTEST * driven for rate in rates.values()):
         return "a limit position is near"
     if strict:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import csv
 import itertools
 import re
+import shutil
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -160,3 +162,21 @@ def test_wrong_words_are_told() -> None:
         ck.exercise(bar, questions="forces")
     with pytest.raises(ck.errors.InvalidInput, match="ten percent"):
         ck.exercise(bar, vary=10)
+
+
+def test_cylinders_may_drive_what_is_asked_about() -> None:
+    """They turn short levers faster than their own rate by the size of the whole; that is no limit position."""
+    one = ck.exercise(loaded("hydraulic-digger"), vary=0.1, seed=0).variants[0]
+    assert [row[0] for row in one.drives] == ["boom-cylinder", "stick-cylinder", "bucket-cylinder"]
+    assert np.isfinite(answers(one)["bucket.angular_velocity"])
+
+
+@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex is installed")
+def test_a_sheet_is_set_by_latex(tmp_path: Path) -> None:
+    ck.exercise(ck.linkages.slider_crank(20, 60), seed=3, questions="mobility").save(tmp_path / "sheets")
+    told = subprocess.run(
+        ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "01.tex"],
+        cwd=tmp_path / "sheets", capture_output=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert told.returncode == 0, told.stdout.decode(errors="replace")[-1500:]
+    assert (tmp_path / "sheets" / "01.pdf").read_bytes().startswith(b"%PDF")
