@@ -189,7 +189,9 @@ def with_force_arrows(
     kept = (replace(one, places={k: point_places(larger, k) for k in one.places}) for one in others)
     marks = [mark for one in turning for mark in _moment_marks(larger, one, named)]
     if named:
-        marks += [_name_of_arrow(larger, one, scale) for scale in scales[:1] for one in courses]
+        for scale in scales[:1]:
+            for one in courses:
+                marks.append(_name_of_arrow(larger, one, scale, _places_of_names(larger, marks)))
     return larger, (*kept, *(_arrows(larger, scale, courses) for scale in scales)), tuple(marks)
 
 
@@ -197,16 +199,48 @@ def with_force_arrows(
 NAMED, TURNING = 14.0, 0.01
 
 
-def _name_of_arrow(sketch: MovingSketch, one: ForceCourse, scale: VectorScale) -> MovingMark:
-    """The name of a force, which goes ahead of the head of its arrow."""
+# A name stands ahead of its arrow, turned from there by so much (radians), or beside this part of it.
+TURNED, BESIDE_PARTS = (0.0, 0.6, -0.6, 1.2, -1.2), (0.75, 0.5)
+
+
+def _places_of_names(sketch: MovingSketch, marks: Sequence[MovingMark]) -> list[tuple[Number, complex]]:
+    """Return where letters, numbers and the names of marks are over the assembled poses, with half their sizes."""
+    found = [(sketch.places(part) + text.at, text_half(text.text, LETTER))
+             for part in sketch.parts if part.is_label for text in texts_in(list(leaves(part.shapes)))]  # fmt: skip
+    found += [(np.where(mark.shown, mark.places + text.at, np.nan), text_half(text.text, SMALL))
+              for mark in marks for text in texts_in(mark.marks)]  # fmt: skip
+    return found
+
+
+def _clear_places(offered: Sequence[Number], half: complex, taken: Sequence[tuple[Number, complex]]) -> Number:
+    """Return at each pose the offered place that covers the fewest names, the first of such."""
+    offers = np.array(offered)
+    covers = np.zeros(offers.shape, dtype=int)
+    for places, other in taken:
+        off, room = offers - places, half + other
+        covers += (np.abs(off.real) < room.real) & (np.abs(off.imag) < room.imag)
+    return np.asarray(np.take_along_axis(offers, np.argmin(covers, axis=0)[None], axis=0)[0])
+
+
+def _name_of_arrow(
+    sketch: MovingSketch, one: ForceCourse, scale: VectorScale, taken: Sequence[tuple[Number, complex]]
+) -> MovingMark:
+    """The name of a force, which goes ahead of the head of its arrow, or beside it where other names are."""
     known = sketch.scene.known
     way = np.conjugate(_finite(one.force[known])) * scale.per_unit
     length = np.abs(way)
     half = text_half(one.shown.name, SMALL)
     e = way / np.where(length > 0.0, length, 1.0)
-    ahead = np.abs(e.real) * half.real + np.abs(e.imag) * half.imag + 3.0
-    places = np.asarray(sketch.window.at(one.at[known])) + way + e * ahead
-    return MovingMark(force_name("", one.shown.name, 0j, one.shown.kind), places, length >= NAMED)
+    at = np.asarray(sketch.window.at(one.at[known]))
+
+    def clear(along: Number, e: Number) -> Number:
+        return at + along + e * (np.abs(e.real) * half.real + np.abs(e.imag) * half.imag + 3.0)
+
+    offered = [clear(way, e * np.exp(1j * turn)) for turn in TURNED]
+    offered += [clear(way * part, e * side) for part in BESIDE_PARTS for side in (1j, -1j)]
+    shown = length >= NAMED
+    places = _clear_places([np.where(shown, place, np.nan) for place in offered], half, taken)
+    return MovingMark(force_name("", one.shown.name, 0j, one.shown.kind), places, shown)
 
 
 def _moment_marks(sketch: MovingSketch, one: ForceCourse, named: bool) -> Iterator[MovingMark]:
