@@ -62,6 +62,7 @@ if TYPE_CHECKING:
     from compoundkin.configurations.circuit_search import circuits
     from compoundkin.configurations.enumeration import configurations
     from compoundkin.dimensional.cognates import cognates
+    from compoundkin.dimensional.coupler_atlas import coupler_atlas
     from compoundkin.dimensional.dyads import dyads
     from compoundkin.dimensional.synthesis import synthesise
     from compoundkin.dynamics.force_analysis import force_analysis
@@ -103,6 +104,7 @@ __all__ = [
     "cognates",
     "compile",
     "configurations",
+    "coupler_atlas",
     "cylinder",
     "damper",
     "decompose",
@@ -180,6 +182,7 @@ _LATE = {
     "cognates": "dimensional.cognates",
     "compile": "programs.compiled_path",
     "configurations": "configurations.enumeration",
+    "coupler_atlas": "dimensional.coupler_atlas",
     "decompose": "structure",
     "draw": "view.sketch",
     "dyads": "dimensional.dyads",

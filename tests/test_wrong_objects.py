@@ -97,6 +97,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], GIVEN]]:
         "characteristics": {"motion": motion, "outputs": (), "design": 0, "dwell": 0.01, "straight": 0.001},
         "circuits": {"mechanism": m, "driver": "crank", "values": None, "between": None, "design": 0},
         "cognates": {"mechanism": h["coupled"], "point": "P"},
+        "coupler_atlas": {"links": 4, "count": 500, "seed": 0, "folder": None},
         "compile": {"mechanism": m, "outputs": ["C"], "free": ["figures.C"], "values": None, "modes": None,
                     "hint": None, "backend": "numpy"},
         "configurations": {"mechanism": m, "values": {"crank": 1.0}},

@@ -63,7 +63,7 @@ Examples:
 """
 )
 @click.argument("file", type=click.Path(), metavar="CURVE")
-@click.option("--links", type=int, default=6, show_default=True, help="At most so many links: 4 or 6.")
+@click.option("--links", type=int, default=6, show_default=True, help="At most so many links: 4, 6 or 8.")
 @click.option("--open/--closed", "is_open", default=None, help="What the curve is, where its ends do not tell.")
 @click.option("--transmission", type=float, default=0.0, metavar="DEGREES", help="The least transmission angle.")
 @click.option(
@@ -77,7 +77,7 @@ def trace_command(
 ) -> int:  # fmt: skip
     """Find linkages whose point follows a drawn curve, of a .csv, .svg or .dxf file.
 
-    A curve whose ends meet is traced once in a turn of the driver, an open one forth and back. Exit code 3: no
+    A curve whose ends meet is traced once in a turn of the driver, an open one by a part of it. Exit code 3: no
     mechanism without a defect.
     """
     from math import radians

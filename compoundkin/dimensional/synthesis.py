@@ -116,6 +116,15 @@ class Answer(DisplaysHtml):
         return self.solutions[index]
 
     @property
+    def front(self) -> tuple[SolvedLinkage, ...]:
+        """The solutions that none of as many links or fewer surpasses in accuracy, those of the fewest links first."""
+        found = list[SolvedLinkage]()
+        for one in sorted(self.solutions, key=lambda one: (len(one.mechanism.links), one.error)):
+            if not found or one.error < found[-1].error:
+                found.append(one)
+        return tuple(found)
+
+    @property
     def reasons(self) -> dict[str, int]:
         """How many candidates were rejected for which reason."""
         return dict(Counter(one.reason for one in self.rejected).most_common())

@@ -180,7 +180,7 @@ class TimedPointTask(Task):
 class CurveTask(Task):
     """A point traces a curve through `points`, complex (n,), with any timing, of a linkage of at most so many `links`.
 
-    A curve that is not `closed` is traced forth and back.
+    A curve that is not `closed` is traced by a part of the driver's turn; the rest of it is free.
     """
 
     points: Number
@@ -188,19 +188,9 @@ class CurveTask(Task):
     links: int
 
     @property
-    def closed_curve(self) -> Number:
-        """The points, and where the curve is open those on the way back."""
-        return self.points if self.closed else np.concatenate([self.points, self.points[-2:0:-1]])
-
-    @property
-    def radius(self) -> float:
-        """The root of the mean square of the points' distances from their mean."""
-        return float(np.sqrt(np.mean(np.abs(self.closed_curve - self.closed_curve.mean()) ** 2)))
-
-    @property
     def in_words(self) -> str:
         """The task as a phrase."""
-        how = "a closed curve" if self.closed else "a curve, forth and back,"
+        how = "a closed curve" if self.closed else "an open curve"
         return f"a point along {how} of {count_phrase(len(self.points), 'point')}"
 
 
@@ -368,16 +358,17 @@ def curve(points: Any, *, closed: bool | None = None, links: int = 6, tolerance:
     """Return the task of a point that traces a drawn curve; the nearest linkages are found, and how far off they are.
 
     `points` are complex or (n, 2), eight or more along the curve, joined by straight lines. It is `closed` if its ends
-    meet, within a twentieth of its extent, unless this is said; an open one is traced forth and back. Linkages have
-    four or six `links`; their driver turns fully. Within a `tolerance`, the mean distance, or as near as they come.
+    meet, within a twentieth of its extent, unless this is said; an open one is traced by a part of the driver's turn.
+    Linkages have four, six or eight `links`; their driver turns fully.
+    Within a `tolerance`, the mean distance, or as near as they come.
     Raises InvalidInput for too few points, or other numbers of links.
 
     >>> curve(np.exp(1j * np.linspace(0, 6, 30)) * (2 + np.cos(np.linspace(0, 12, 30)))).in_words
-    'a point along a curve, forth and back, of 30 points'
+    'a point along an open curve of 30 points'
     """
     found = places("points", points)
-    if links not in (4, 6):
-        raise InvalidInput(Problem("links", f"linkages of {links} links are not in the atlas", "take 4 or 6"))
+    if links not in (4, 6, 8):
+        raise InvalidInput(Problem("links", f"linkages of {links} links are not in the atlas", "take 4, 6 or 8"))
     found = np.concatenate([found[:1], found[1:][np.diff(found) != 0.0]])
     if len(found) < FEWEST_OF_CURVE:
         what = f"{count_phrase(len(found), 'different point')}: too few for a curve"

@@ -1,8 +1,9 @@
-"""`python -m tests.benchmarks.tracing CURVES.npy [--open]`: how near drawn curves are traced, and how long it takes.
+"""`python -m tests.benchmarks.tracing CURVES.npy [LINKS [FIRST LAST]]`: how near drawn curves are traced, how fast.
 
 CURVES is an array (curves, places, 2), such as the coupler curves of the LINKS data set or LInK's hand-drawn letters
 (A. H. Nobari et al., LInK, MIT 2024). The measure is LInK's: both curves at 2,000 places evenly along their arcs, in
-the target's RMS radius, the mean distance from each place to the nearest of the other, both ways, summed.
+the target's RMS radius, the mean distance from each place to the nearest of the other, both ways, summed. Of an open
+curve the part of the turn that traces it counts. Linkages have at most LINKS links, 8 if it is left out.
 """
 
 from __future__ import annotations
@@ -25,42 +26,50 @@ def even(z: np.ndarray, closed: bool) -> np.ndarray:
     z = np.append(z, z[:1]) if closed else z
     along = np.append(0.0, np.cumsum(np.abs(np.diff(z))))
     wanted = np.linspace(0.0, along[-1], PLACES, endpoint=not closed)
-    return np.interp(wanted, along, z.real) + 1j * np.interp(wanted, along, z.imag)
+    x, y = (np.interp(wanted, along, part) for part in (z.real, z.imag))
+    return np.asarray(x + 1j * y)
 
 
 def chamfer(found: np.ndarray, target: np.ndarray, closed: bool) -> float:
     """LInK's measure."""
-    one, two = even(found, True), even(target, closed)
+    one, two = even(found, closed), even(target, closed)
     radius = np.sqrt(np.mean(np.abs(two - two.mean()) ** 2))
     planes = [np.stack([z.real, z.imag], axis=-1) / radius for z in (one, two)]
     return float(sum(cKDTree(planes[k]).query(planes[1 - k])[0].mean() for k in (0, 1)))
 
 
-def main(path: str) -> None:
-    """Print each curve, and means."""
-    begun = time.perf_counter()
+def main(path: str, links: int = 8, first: int = 0, last: int | None = None) -> None:
+    """Print each curve, and means; of fewer links too."""
+    begun = time.process_time()
     atlas = coupler_atlas(6, curve_fitting.DESIGNS)
-    print(f"atlas of {len(atlas)} designs: {time.perf_counter() - begun:.1f} s")
+    print(f"atlas of {len(atlas)} designs: {time.process_time() - begun:.1f} s of CPU")
     rows: dict[bool, list[tuple[float, float]]] = {True: [], False: []}
-    for k, places in enumerate(np.load(path)):
+    for k, places in list(enumerate(np.load(path)))[first:last]:
         task = curve(places)
-        begun = time.perf_counter()
-        best = curve_fitting.fitted(atlas.near(task.closed_curve, curve_fitting.STARTED), task.closed_curve)[0]
-        spent = time.perf_counter() - begun
-        z, _ = best.chain.curves(best.design[None], 720)
-        laid = best.scale * z[0] + best.place
-        apart = chamfer(np.conj(laid) if best.mirrored else laid, task.points, task.closed)
+        begun = time.process_time()
+        near = atlas.near(task.points, curve_fitting.STARTED, closed=task.closed)
+        found = curve_fitting.fitted(near, task.points, task.closed, links)
+        spent = time.process_time() - begun
+        least = {n: next((one for one in found if one.chain.links == n), None) for n in (4, 6, 8)}
+        parts = []
+        for best in least.values():
+            if best is None:
+                parts.append("      -")
+                continue
+            begin, by = best.window or (0.0, 2.0 * np.pi)
+            angles = begin + by * np.linspace(0.0, 1.0, 720, endpoint=best.window is not None)
+            z = best.laying.laid(best.chain.places(best.design[None], angles)[0][0])
+            parts.append(f"{chamfer(z, task.points, task.closed):.5f}")
+        apart = min(float(part) for part in parts if part.strip() != "-")
         rows[task.closed].append((apart, spent))
-        print(
-            f"{k:4d} {'closed' if task.closed else 'open':6s} {apart:.5f} {spent:5.1f} s  {best.chain.title}",
-            flush=True,
-        )
-    for closed, found in rows.items():
-        if found:
-            apart, spent = np.array(found).T
+        kind = "closed" if task.closed else "open"
+        print(f"{k:4d} {kind:6s} {apart:.5f} {spent:5.1f} s  {' '.join(parts)}  {found[0].chain.title}", flush=True)
+    for closed, each in rows.items():
+        if each:
+            apart, spent = np.array(each).T
             kind = "closed" if closed else "open"
             print(f"{kind}: mean {apart.mean():.5f}, median {np.median(apart):.5f}, {spent.mean():.1f} s each")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(sys.argv[1], *map(int, sys.argv[2:]))

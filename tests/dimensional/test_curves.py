@@ -14,7 +14,7 @@ from compoundkin.cli import cli
 from compoundkin.dimensional import coupler_atlas as atlases
 from compoundkin.dimensional import curve_fitting
 from compoundkin.dimensional.coupler_atlas import coefficients, coupler_atlas, likeness, mean_distance, resampled
-from compoundkin.dimensional.curve_chains import CurveChain, curve_chains
+from compoundkin.dimensional.curve_chains import CurveChain, curve_chains, turn
 from compoundkin.errors import InvalidInput
 from compoundkin.files.curve_files import read_curve
 from compoundkin.synthesis.chains.mechanism_names import structure_name
@@ -29,6 +29,7 @@ def _small_atlas(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(curve_fitting, "DESIGNS", 4_000)
     monkeypatch.setattr(curve_fitting, "STARTED", 24)
     monkeypatch.setattr(curve_fitting, "GIVEN", 3)
+    monkeypatch.setattr(curve_fitting, "ROUNDS", 0)
 
 
 def plain_distance(curve: np.ndarray, target: np.ndarray) -> float:
@@ -69,12 +70,15 @@ def test_likeness_knows_no_turn_size_start_sense_or_mirror(k: int) -> None:
 
 
 def test_an_atlas_is_made_again_bitwise_and_its_designs_turn_fully() -> None:
-    made = coupler_atlas.__wrapped__(6, 2400, 3)
-    again = coupler_atlas.__wrapped__(6, 2400, 3)
+    made = coupler_atlas(6, 2400, 3)
+    atlases._atlas.cache_clear()
+    again = coupler_atlas(6, 2400, 3)
     assert len(made) == 2400
-    for one, other in zip(made.designs + made.descriptors, again.designs + again.descriptors, strict=True):
-        np.testing.assert_array_equal(one, other)
-    for chain, designs, descriptors in zip(made.chains, made.designs, made.descriptors, strict=True):
+    for part, other in zip(made.parts, again.parts, strict=True):
+        for one, two in zip(part.read(), other.read(), strict=True):
+            np.testing.assert_array_equal(one, two)
+    for part in made.parts:
+        chain, (designs, descriptors) = part.chain, part.read()
         motion = solved(chain, designs[7], 360)
         assert motion.assembled.all(), chain.title
         curve = np.ravel(motion.points["P"].position)
@@ -91,8 +95,9 @@ def test_the_nearest_are_those_of_a_search_through_all(monkeypatch: pytest.Monke
     made = coupler_atlas(6, 6_000)
     wanted = coefficients(EGG[None])[0][0]
     monkeypatch.setattr(atlases, "COMPARED", 16)
-    for k, (designs, descriptors) in enumerate(zip(made.designs, made.descriptors, strict=True)):
-        best = next(made._nearest(k, wanted, 1))
+    for part in made.parts:
+        designs, descriptors = part.read()
+        best = next(atlases._nearest(part, EGG, True, 1))
         np.testing.assert_array_equal(best.design, designs[likeness(descriptors, wanted)[0].argmax()])
     found = made.near(EGG, 30)
     assert [one.apart for one in found] == sorted(one.apart for one in found)
@@ -110,7 +115,7 @@ def test_chains_are_what_they_are_called(chain: CurveChain) -> None:
 def test_slopes_are_differences(chain: CurveChain) -> None:
     designs = chain.designs(np.random.default_rng(2).random((4096, len(chain.numbers))))
     design = designs[chain.curves(designs, 32)[1]][:1]
-    _, by, by_crank, _ = chain.slopes(design, 32)
+    _, by, by_crank, _ = chain.slopes(design, turn(32))
     for k in range(len(chain.numbers)):
         step = np.zeros(len(chain.numbers))
         step[k] = 1e-6
@@ -129,6 +134,7 @@ def test_a_planted_four_bar_is_traced(seed: int) -> None:
         radius = np.sqrt(np.mean(np.abs(target - target.mean()) ** 2))
         assert one.error == pytest.approx(plain_distance(path, target) * radius / 2, rel=0.1, abs=1e-3 * radius)
         assert one.turns
+    assert [len(one.mechanism.links) for one in answer.front] == [4]
     assert answer[0].error < 0.01 * np.sqrt(np.mean(np.abs(target - target.mean()) ** 2))
 
 
@@ -163,13 +169,109 @@ def test_designs_that_come_near_limits_are_left_out(monkeypatch: pytest.MonkeyPa
     assert all(one.chain is not matches[0].chain for one in curve_fitting.fitted(matches, EGG))
 
 
-def test_an_open_curve_is_traced_forth_and_back() -> None:
+def test_an_open_curve_is_traced_by_a_part_of_the_turn() -> None:
     s = np.linspace(0, 1, 40)
     task = ck.tasks.curve(np.exp(2.0j * s) * (1 + 0.2 * s), links=4)
     assert not task.closed
     best = ck.synthesise(task)[0]
-    path = np.ravel(best.motion.points["P"].position)
-    assert np.abs(path[:, None] - task.points).min(axis=1).max() < 0.1
+    assert best.turns
+    stroke = np.linspace(best.values[0], best.values[-1], 200)
+    assert 0.3 < abs(stroke[-1] - stroke[0]) < 2 * np.pi
+    path = np.ravel(ck.solve(best.mechanism, {best.driver: stroke}).points["P"].position)
+    apart = np.abs(path[:, None] - task.points)
+    assert max(apart.min(axis=1).max(), apart.min(axis=0).max()) < 0.05
+    # it is measured over that part, both ways
+    assert best.error == pytest.approx((apart.min(axis=1).mean() + apart.min(axis=0).mean()) / 2, abs=0.01)
+    whole = np.ravel(best.motion.points["P"].position)
+    assert np.abs(whole[:, None] - task.points).min(axis=1).max() > 0.1  # the rest of the turn is free
+
+
+@pytest.mark.parametrize("chain", curve_chains()[::9], ids=lambda chain: chain.title)
+def test_a_chain_with_a_dyad_more_traces_what_it_traced(chain: CurveChain) -> None:
+    rng = np.random.default_rng(5)
+    designs = chain.designs(rng.random((2048, len(chain.numbers))))
+    z, clear = chain.curves(designs, 32)
+    larger = chain.grown(chain.carriers[0], 1) if chain.links < 8 else chain
+    assert larger.parent is chain
+    assert larger.links == chain.links + 2
+    grown = chain.grown_designs(
+        larger, np.repeat(designs[clear][:1], 512, axis=0), rng.random((512, len(larger.numbers)))
+    )
+    own, turning = larger.curves(grown, 32)
+    assert turning.any()
+    assert np.allclose(own[turning], z[clear][0], atol=1e-9)
+
+
+def test_growth_is_promised_what_a_step_gives() -> None:
+    """The gain of a first step by P's two coordinates, against that of all unknowns by differences of P."""
+    chain = curve_chains()[0]
+    target = curve_fitting.CurveTarget.of(EGG, True)
+    matches = [match for match in coupler_atlas(4, 4_000).near(EGG, 8) if match.chain is chain]
+    part = next(iter(curve_fitting._refined(curve_fitting._begun(matches, target))))
+    one = part.best(np.array([0]))
+    larger = chain.grown("frame", 1)
+    gains, designs = curve_fitting._promised(one, larger, np.random.default_rng(1).random((512, len(larger.numbers))))
+    assert len(gains) == len(designs) > 3
+    x = np.hstack([designs, np.repeat(one.x[:, len(chain.numbers) :], len(designs), axis=0)])
+    r, j, _ = curve_fitting._residuals(larger, x, one.target, False)
+    assert np.allclose((r**2).sum(axis=1), one.cost[0], rtol=1e-6)
+    unknowns = [k for k in range(j.shape[2]) if np.abs(j[0, :, k]).max() > 1e-12]
+    best = [
+        float(one.cost[0] - np.linalg.lstsq(a[:, unknowns], b, rcond=None)[1].sum()) for a, b in zip(j, r, strict=True)
+    ]
+    bound = np.array(best) + 1e-9
+    assert (gains <= bound).all()
+    assert gains.max() > 0.5 * bound[gains.argmax()]
+
+
+def test_rounds_lose_nothing_and_grow(monkeypatch: pytest.MonkeyPatch) -> None:
+    blot = EGG + 0.5j * np.exp(3j * np.angle(EGG - EGG.mean()))
+    matches = coupler_atlas(4, 4_000).near(blot, 16)
+    plain = curve_fitting.fitted(matches, blot, links=6)
+    monkeypatch.setattr(curve_fitting, "ROUNDS", 1)
+    grown = curve_fitting.fitted(matches, blot, links=6)
+    best = {links: min(one.apart for one in grown if one.chain.links == links) for links in (4, 6)}
+    assert best[4] <= plain[0].apart * 1.05  # squares are what is least
+    assert best[6] < best[4]  # one grew, and gained
+    again = curve_fitting.fitted(matches, blot, links=6)
+    assert [one.apart for one in again] == [one.apart for one in grown]
+
+
+def test_an_atlas_in_a_folder_is_opened_and_gives_the_same(tmp_path: Path) -> None:
+    pytest.importorskip("pyarrow")
+    plain, kept = coupler_atlas(4, 500, 2), coupler_atlas(4, 500, 2, tmp_path / "atlas")
+    opened = coupler_atlas(4, 500, 2, tmp_path / "atlas")
+    assert len(opened) == 500
+    assert opened.parts[0].held is None
+    for atlas in (kept, opened):
+        for one, other in zip(atlas.near(EGG, 5), plain.near(EGG, 5), strict=True):
+            np.testing.assert_array_equal(one.design, other.design)
+            assert one.apart == other.apart
+    with pytest.raises(InvalidInput, match="another atlas"):
+        coupler_atlas(4, 600, 2, tmp_path / "atlas")
+
+
+@pytest.mark.parametrize(("links", "count", "words"), [(5, 100, "take 4, 6 or 8"), (6, 3, "one of each chain: 24")])
+def test_wrong_atlases_say_what_would_do(links: int, count: int, words: str) -> None:
+    with pytest.raises(InvalidInput, match=words):
+        coupler_atlas(links, count)
+
+
+def test_near_keeps_to_conditions_where_designs_lie() -> None:
+    made = coupler_atlas(6, 6_000)
+    found = made.near(EGG, 6, links=4, sliders=False, size=30.0, region=[(-3, -5), (13, 11)], transmission=0.3)
+    assert 0 < len(found) <= 6
+    for one in found:
+        assert one.chain.title == "Four-bar"
+        motion = ck.solve(one.mechanism)
+        assert one.linkage.span <= 30.0
+        assert all(-3 <= pivot.real <= 13 and -5 <= pivot.imag <= 11 for pivot in one.linkage.pivots)
+        sides = [motion.points[name].position for name in "BCD"]
+        across = np.angle((sides[0] - sides[1]) / (sides[2] - sides[1]))
+        assert np.abs(np.sin(across)).min() >= np.sin(0.3) - 1e-6
+        path = np.ravel(motion.points["P"].position)
+        radius = np.sqrt(np.mean(np.abs(EGG - EGG.mean()) ** 2))
+        assert plain_distance(path, EGG) < 4 * one.apart + 0.02, radius
 
 
 def test_conditions_hold_for_curves_too() -> None:
@@ -182,7 +284,7 @@ def test_conditions_hold_for_curves_too() -> None:
     ("points", "options", "words"),
     [
         (EGG[:5], {}, "too few for a curve"),
-        (EGG, {"links": 5}, "take 4 or 6"),
+        (EGG, {"links": 5}, "take 4, 6 or 8"),
         ([1, 2, np.nan, 4, 5, 6, 7, 8, 9], {}, "not finite"),
         (np.ones(20), {}, "1 different point"),
         ([], {}, "0 different points"),
