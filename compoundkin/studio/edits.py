@@ -534,6 +534,11 @@ def _without_pair(sheet: EditedDocument, name: str) -> None:
     if not gone:
         raise UnknownName(Problem(name, "there is no such pair"))
     _after(sheet, gone, name)
+    # a wheel or a cam of one point that nothing names any more goes too
+    for link in {table.get(key) for table in gone for key in ("first", "second", "on") if "through" not in table}:
+        is_named = any(link in map(table.get, LINK_KEYS) for _, _, table in sheet.tables())
+        if link in sheet.links and link != FRAME and len(sheet.points(link)) == 1 and not is_named:
+            del sheet.links[link]
 
 
 def _after(sheet: EditedDocument, gone: list[Any], name: str) -> None:

@@ -67,7 +67,7 @@ export class Canvas {
     // who changes what is drawn before it is, and who draws above it
     this.before = [];
     this.after = [];
-    this.sized = new ResizeObserver(() => this.draw());
+    this.sized = new ResizeObserver(() => { this.measured = null; this.draw(); });
     this.sized.observe(svg);
   }
 
@@ -76,7 +76,8 @@ export class Canvas {
     this.svg.replaceChildren();
   }
 
-  get size() { return [this.svg.clientWidth || 1, this.svg.clientHeight || 1]; }
+  // measured once: asked again after each change of the picture it would be laid out as often
+  get size() { return this.measured ??= [this.svg.clientWidth || 1, this.svg.clientHeight || 1]; }
 
   // from the plane of the mechanism, y up, to the screen and back
   screen([x, y]) {
@@ -263,6 +264,13 @@ export class Canvas {
       const [a, b] = is ? points.map((one) => this.at(one)) : [];
       if (!best && a && b && toSegment(at, a, b) <= NEAR_BAR * reach) best = { pair: name };
     }
+    for (const { name, shapes } of best ? [] : this.structure?.pairs ?? []) {
+      // the rim of a wheel or a profile is its pair
+      const isNear = (shape) => (shape.line
+        ? this.#outline(shape).some((one, k, all) => k && toSegment(at, all[k - 1], one) <= near)
+        : Math.abs(distance(at, this.#inLink(shape.link)(shape.at)) - shape.radius * this.view.scale) <= near);
+      if (shapes?.some(isNear)) best ??= { pair: name };
+    }
     return best;
   }
 
@@ -331,22 +339,31 @@ export class Canvas {
     }
   }
 
+  // from the frame of a link to the screen
+  #inLink(link) {
+    const own = this.pose === null ? null : this.motion?.origins[link];
+    const origin = own ? [own[0][this.pose], own[1][this.pose]] : this.structure.origins[link] ?? [0, 0];
+    const turned = this.angle(link), [c, s] = [Math.cos(turned), Math.sin(turned)];
+    return ([x, y]) => this.screen([origin[0] + c * x - s * y, origin[1] + s * x + c * y]);
+  }
+
+  #outline({ link, line, is_closed: isClosed }) {
+    const at = this.#inLink(link), places = line[0].map((x, k) => at([x, line[1][k]]));
+    return isClosed ? [...places, places[0]] : places;
+  }
+
   // a wheel or a profile, in the frame of its link
   #shape(shape) {
-    const own = this.pose === null ? null : this.motion?.origins[shape.link];
-    const origin = own ? [own[0][this.pose], own[1][this.pose]] : this.structure.origins[shape.link] ?? [0, 0];
-    const turned = this.angle(shape.link), [c, s] = [Math.cos(turned), Math.sin(turned)];
-    const at = ([x, y]) => this.screen([origin[0] + c * x - s * y, origin[1] + s * x + c * y]);
     const style = `shape${colour(this.link(shape.link)?.colour)}`;
     if (shape.line) {
-      const path = shape.line[0].map((x, k) => at([x, shape.line[1][k]]).map((n) => n.toFixed(2)).join(" ")).join("L");
+      const path = this.#outline(shape).map((one) => one.map((n) => n.toFixed(2)).join(" ")).join("L");
       made("path", { d: `M${path}${shape.is_closed ? "Z" : ""}`, class: style }, this.shapes);
       return;
     }
-    const [x, y] = at(shape.at), r = shape.radius * this.view.scale;
+    const [x, y] = this.#inLink(shape.link)(shape.at), r = shape.radius * this.view.scale, turned = this.angle(shape.link);
     made("circle", { cx: x, cy: y, r, class: `${style}${shape.teeth ? " gear" : ""}` }, this.shapes);
     // a spoke shows how it turns
-    made("path", { d: `M${x} ${y}L${x + r * c} ${y - r * s}`, class: `${style} spoke` }, this.shapes);
+    made("path", { d: `M${x} ${y}L${x + r * Math.cos(turned)} ${y - r * Math.sin(turned)}`, class: `${style} spoke` }, this.shapes);
   }
 
   #cylinder([a, b]) {

@@ -324,7 +324,7 @@ export class Gestures {
     if (picked.size && !over) what = `${[...picked].join(", ")} chosen: drag one of them, arrows move them, Delete deletes them`;
     else if (it?.point) what = `${it.point}: ${isMoving ? "drag to move it, onto a point to join, with Alt to take a bar off" : draws}, with Ctrl to lengthen one bar alone; G ground, D driver, S slide, Delete; right click: all`;
     else if (it?.link) what = `${it.link}: ${isMoving ? "drag to move it" : `${draws}; a bar dropped on it gets a pin there`}; click to choose it, then type a length; P a pin here, Delete; right click: all`;
-    else if (it?.pair) what = `${it.pair}: D drives it, Delete; right click: all`;
+    else if (it?.pair) what = `${it.pair}: ${this.canvas.cylinder(it.pair) ? "D drives it, " : "click to choose it, "}Delete; right click: all`;
     this.studio.say(what);
   }
 
@@ -351,7 +351,8 @@ export class Gestures {
       studio.edit({ do: "delete", ...it });
     } else if (it.pair) {
       const isDriven = studio.structure.drives.some((one) => one.name === it.pair);
-      if (what === "driver") studio.edit(isDriven ? { do: "delete", drive: it.pair } : { do: "driver", cylinder: it.pair });
+      if (what !== "driver" || !canvas.cylinder(it.pair)) studio.say(`${it.pair}: Delete, or the menu`);
+      else studio.edit(isDriven ? { do: "delete", drive: it.pair } : { do: "driver", cylinder: it.pair });
     } else if (what === "slide" && it.link && canvas.chosen?.point) {
       studio.edit({ do: "slide", point: canvas.chosen.point, on: it.link });
     } else if (what === "lock") {
@@ -417,7 +418,7 @@ export class Gestures {
   async menu(it, at) {
     const { canvas, studio } = this, place = canvas.rounded(canvas.plane(at)), before = canvas.chosen;
     if (it) { canvas.chosen = it; canvas.draw(); }
-    const items = it?.point ? this.#ofPoint(it.point, before) : it?.link ? this.#ofLink(it.link, at, place, before) : it?.pair ? this.#ofCylinder(it.pair) : this.#ofGround(at);
+    const items = it?.point ? this.#ofPoint(it.point, before) : it?.link ? this.#ofLink(it.link, at, place, before) : it?.pair ? this.#ofPair(it.pair) : this.#ofGround(at);
     const asked = items.filter((one) => one.edit), text = studio.text;
     const { why = [] } = asked.length ? await studio.ask({ ask: "offers", edits: asked.map((one) => one.edit) }) : {};
     if (text !== studio.text) return;
@@ -467,8 +468,9 @@ export class Gestures {
     ];
   }
 
-  #ofCylinder(name) {
+  #ofPair(name) {
     const isDriven = this.studio.structure.drives.some((one) => one.name === name);
+    if (!this.canvas.cylinder(name)) return [{ words: `Delete ${name}`, key: "Delete", edit: { do: "delete", pair: name } }];
     return [
       isDriven ? { words: "Take its driver out", key: "D", edit: { do: "delete", drive: name } } : { words: `Drive ${name}`, key: "D", edit: { do: "driver", cylinder: name } },
       { words: `Delete ${name}`, key: "Delete", edit: { do: "delete", pair: name } },

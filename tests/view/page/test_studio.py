@@ -463,6 +463,12 @@ def test_the_menu_says_why_and_forms_make_gears(window: Any) -> None:
     (pair,) = loads(seen.text).written_pairs
     assert (pair.code, pair.members[0]) == ("G", "bar1")
     assert seen.value("document.querySelectorAll('#canvas .gear').length") == 2
+    # the rim of the greater one, around D; with the pair goes the wheel that it made
+    rim = D[0], D[1] - 2 / 3 * (D[0] - A[0])
+    seen.view.keyboard.press("Escape")
+    seen.press(rim, "Delete")
+    assert "gears" not in seen.text
+    assert "wheel1" not in seen.text
     seen.view.keyboard.press("v")
     seen.drag(C, (C[0] + 60, C[1] - 40), "Alt")
     assert "E" in at_of(seen)
