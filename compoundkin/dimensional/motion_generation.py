@@ -97,7 +97,10 @@ def nearest_linkages(task: PoseTask) -> Iterator[Linkage]:
         def distances(x: Number, pair: tuple[Dyad, Dyad] = pair) -> Number:
             return _distances(z, u, _with_numbers(pair, x))
 
-        best = least_squares(distances, start, x_scale="jac", max_nfev=120)
+        def slopes(x: Number, pair: tuple[Dyad, Dyad] = pair) -> Number:
+            return _slopes(z, u, pair, x)
+
+        best = least_squares(distances, start, slopes, x_scale="jac", max_nfev=120)
         dyads = _with_numbers(pair, best.x)
         there = _allowed(z, u, dyads)
         if there is not None:
@@ -156,7 +159,10 @@ def _with_numbers(pair: tuple[Dyad, Dyad], x: Number) -> tuple[Dyad, Dyad]:
 
 
 def _closure(z: Number, u: Number, pair: tuple[Dyad, Dyad]) -> tuple[Number, Number]:
-    """Return by how much both dyads are open at poses (n, 2), and the slopes by x, y and the angle (n, 2, 3)."""
+    """Return by how much both dyads are open at poses (n, 2), and the slopes by x, y and the angle (n, 2, 3).
+
+    The numbers of dyads may be columns, of several pairs at once.
+    """
     values, slopes = [], []
     for dyad in pair:
         arm = u * dyad.moving
@@ -165,7 +171,7 @@ def _closure(z: Number, u: Number, pair: tuple[Dyad, Dyad]) -> tuple[Number, Num
             way = off / np.maximum(np.abs(off), 1e-300)
             values.append(np.abs(off) - dyad.length)
         else:
-            way = np.full(len(z), 1j * dyad.direction)
+            way = np.broadcast_to(1j * dyad.direction, off.shape)
             values.append((np.conj(dyad.direction) * off).imag)
         slopes.append(np.stack([way.real, way.imag, (np.conj(way) * 1j * arm).real], axis=-1))
     return np.stack(values, axis=-1), np.stack(slopes, axis=-2)
@@ -175,8 +181,21 @@ def _distances(z: Number, u: Number, pair: tuple[Dyad, Dyad]) -> Number:
     """Return the distances of poses from those that two dyads allow, to first order: two for each pose."""
     values, slopes = _closure(z, u, pair)
     gram = slopes @ np.swapaxes(slopes, -1, -2) + 1e-12 * np.eye(2)
-    found: Number = np.linalg.solve(np.linalg.cholesky(gram), values[..., None]).ravel()
-    return found
+    found: Number = np.linalg.solve(np.linalg.cholesky(gram), values[..., None])
+    return found.reshape(*values.shape[:-2], -1)
+
+
+def _slopes(z: Number, u: Number, pair: tuple[Dyad, Dyad], x: Number) -> Number:
+    """Return the slopes of the distances by the numbers of both dyads, by differences of all of them at once."""
+    steps = np.sqrt(np.finfo(float).eps) * np.where(x < 0.0, -1.0, 1.0) * np.maximum(1.0, np.abs(x))
+    moved = x + np.diag(steps)
+    made = []
+    for dyad, numbers in zip(pair, np.hsplit(np.vstack([x, moved]), 2), strict=True):
+        a, b, c, d, last = (column[:, None] for column in numbers.T)
+        crank = dyad.direction is None
+        made.append(Dyad(dyad.kind, a + 1j * b, c + 1j * d, None if crank else np.exp(1j * last), np.abs(last)))
+    here, *there = _distances(z, u, (made[0], made[1]))
+    return np.transpose(np.array([one - here for one in there]) / (np.diag(moved) - x)[:, None])
 
 
 def _allowed(z: Number, u: Number, pair: tuple[Dyad, Dyad]) -> tuple[Number, Number] | None:

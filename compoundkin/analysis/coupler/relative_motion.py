@@ -143,6 +143,16 @@ class RelativeMotion:
 
     def scale(self, k: int) -> Number:
         """Return the greatest rate of links and drivers at a pose, in rad/s^k, the scale of rounding."""
+        if k not in self._scales:
+            self._scales[k] = self._scale(k)
+        return self._scales[k]
+
+    @cached_property
+    def _scales(self) -> dict[int, Number]:
+        """The scales that were asked for, by their k."""
+        return {}
+
+    def _scale(self, k: int) -> Number:
         size, links, drives = self.motion.size, self.motion.links, self.motion.drives.values()
         rates = [np.abs(d.derivative(k)) / (1.0 if d.is_angle else size) for d in drives]
         for name in (self.link, self.on):
