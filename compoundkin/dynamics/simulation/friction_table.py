@@ -469,7 +469,7 @@ class ForceLayout:
 
     Normal forces, those in the `pressed` contacts, have rows under loads alone, for a unit acceleration, for a unit
     squared speed, for a unit of each friction, for a unit force along x, along y and a unit moment on each of the
-    `touched` links, for a unit effort along each of the pairs with `stops`, and in each state of self-stress.
+    `touched` links, for a unit effort along each of the `efforts`' pairs, and in each state of self-stress.
     """
 
     contacts: tuple[LoadedContact, ...]
@@ -477,21 +477,21 @@ class ForceLayout:
     touched: tuple[str, ...]
     components: NormalForceComponents
     pressed: tuple[LoadedContact, ...]
-    stops: tuple[str, ...] = ()
+    efforts: tuple[str, ...]
     left_out: tuple[LeftOut, ...] = ()
     states: int = 0
 
     @cached_property
     def none(self) -> Number:
         """The forces of no load that depends on time or speed."""
-        return np.zeros(2 + 3 * len(self.touched))
+        return np.zeros(2 + 3 * len(self.touched) + len(self.efforts))
 
     @cached_property
     def scales(self) -> tuple[int, ...]:
         """The scales of rows by number: frictions along the driver have one each, normal forces one for each cause."""
         n, wide = len(self.contacts), len(self.components.together)
         first = max(DRIVE_SCALES) + 1
-        alone = len(self.stops) + self.states
+        alone = len(self.efforts) + self.states
         causes = [0, 1, 1, *[2] * n, *(3 + k for _ in self.touched for k in (0, 0, 1)), *(5 + k for k in range(alone))]
         return (*DRIVE_SCALES, *range(first, first + n), *(first + n + k for k in causes for _ in range(wide)))
 
@@ -503,7 +503,7 @@ class ForceLayout:
         own = causes[0] + speed * speed * causes[2]
         if len(others) > 2:
             stored, other = stored + float(others[0]), other + float(others[1])
-            own = own + others[2:].dot(causes[3 + n :])
+            own = own + others[2:].dot(causes[3 + n : 3 + n + len(others) - 2])
         kept = stored - bias * speed * speed
         found = NormalForceState(self.components, own, causes[1], causes[3 : 3 + n], sliding, inertia, kept + other,
                                  rows[4 : 4 + n], is_mild)  # fmt: skip
@@ -550,7 +550,7 @@ class ForceLayout:
         yield from (contact.on_links(unit) for contact, unit in zip(self.contacts, units, strict=True))
         for link in self.touched:
             yield from ({link: Wrench(force * ones, moment * ones)} for force, moment in UNITS)
-        yield from (_summed(list(at.unit_effort(pair))) for pair in self.stops)
+        yield from (_summed(list(at.unit_effort(pair))) for pair in self.efforts)
 
 
 # A unit force along x, one along y, and a unit moment about the origin.
@@ -646,7 +646,7 @@ class ContactForces:
         self, chart: TabulatedChart, seen: PushedState, time: float, values: Number, speeds: Number
     ) -> Number:
         """Return the efforts along the pairs with stops: those of elastic ones may be among the other loads."""
-        efforts = dict.fromkeys(self.layout.stops, 0.0)
+        efforts = dict.fromkeys(self.layout.efforts[len(chart.pushing) :], 0.0)
         rigid = chart.rigid
         if rigid:
             free = chart.unheld_rates(time, values, speeds)
@@ -712,12 +712,14 @@ def _layout(chart: TabulatedChart, motion: Motion, pressed: tuple[LoadedContact,
     rows = [row for own in each for row in own]
     owners = [k for k, own in enumerate(each) for _ in own]
     vectors = [k for k, row in enumerate(rows) if np.iscomplexobj(row)]
-    found = ForceLayout(rubbing, chart.timeless, chart.touched, NormalForceComponents(owners, vectors), contacts)
+    components = NormalForceComponents(owners, vectors)
+    found = ForceLayout(rubbing, chart.timeless, chart.touched, components, contacts, chart.pushing)
     if pressed is None:
         return found
     left_out = parts_left_out(motion.structure)
     stops = dict.fromkeys(one.stop.pair for one in chart.stop_contacts)
-    return replace(found, stops=tuple(stops), left_out=left_out, states=len(list(stressed_blocks(at, left_out))))
+    efforts = (*chart.pushing, *stops)
+    return replace(found, efforts=efforts, left_out=left_out, states=len(list(stressed_blocks(at, left_out))))
 
 
 def _stretches(

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeGuard
 
 import numpy as np
 
@@ -213,30 +213,50 @@ class TabulatedChart(DriverChart):
         return replace(at, driven=known)
 
     @cached_property
+    def pushing(self) -> tuple[str, ...]:
+        """The names of the pairs along which loads act that depend on time or speed."""
+        named = (load.pair for loads in self.others for load in loads if self._is_along(load))
+        return tuple(dict.fromkeys(named))
+
+    def _is_along(self, load: Load) -> TypeGuard[PairLoad]:
+        """Whether a load is known by its effort along a pair, whatever links turn freely."""
+        return isinstance(load, PairLoad) and not self.start.structure.passive
+
+    @cached_property
     def touched(self) -> tuple[str, ...]:
-        """The links on which loads that depend on time or speed act."""
+        """The links on which other loads act that depend on time or speed."""
         value = [float(np.ravel(v[0])[0]) for name, v in self.start.inputs.drives.items() if name in self.free]
         return self._touched_by(self.state(0.0, np.array(value), np.zeros(1)).loaded)
 
     def _touched_by(self, at: LoadedState) -> tuple[str, ...]:
         """Return them at a state."""
-        links = [link for loads in self.others for load in loads for link, _ in load.wrenches(at)]
-        return tuple(dict.fromkeys(link for link in links if link != FRAME))
+        loads = (load for loads in self.others for load in loads if not self._is_along(load))
+        return tuple(dict.fromkeys(link for load in loads for link, _ in load.wrenches(at) if link != FRAME))
 
     def wrenches_of_others(self, at: LoadedState, touched: tuple[str, ...]) -> Number | None:
-        """Return the forces of loads that depend on time or speed, and their wrenches by the links they touch."""
-        found = np.zeros(2 + 3 * len(touched))
+        """Return the forces of loads that depend on time or speed, and how they act on links and along pairs.
+
+        That is their forces along x and y and moments by the links they touch, then their efforts by pairs.
+        """
+        first = 2 + 3 * len(touched)
+        found = np.zeros(first + len(self.pushing))
         for k, loads in enumerate(self.others):
-            for link, wrench in (one for load in loads for one in load.wrenches(at)):
-                if link == FRAME:
+            for load in loads:
+                if self._is_along(load):
+                    effort = float(np.ravel(load.effort(at))[0])
+                    found[k] += effort * at.rates_of(load.pair)[0][0]
+                    found[first + self.pushing.index(load.pair)] += effort
                     continue
-                if link not in touched:
-                    return None
-                assert at.columns is not None
-                found[k] += np.ravel(at.freed(link, wrench).power(at.columns[link]))[0]
-                force, moment = complex(np.ravel(wrench.force)[0]), float(np.ravel(wrench.moment)[0])
-                first = 2 + 3 * touched.index(link)
-                found[first : first + 3] += force.real, force.imag, moment
+                for link, wrench in load.wrenches(at):
+                    if link == FRAME:
+                        continue
+                    if link not in touched:
+                        return None
+                    assert at.columns is not None
+                    found[k] += np.ravel(at.freed(link, wrench).power(at.columns[link]))[0]
+                    force, moment = complex(np.ravel(wrench.force)[0]), float(np.ravel(wrench.moment)[0])
+                    own = 2 + 3 * touched.index(link)
+                    found[own : own + 3] += force.real, force.imag, moment
         return found
 
     @cached_property
