@@ -77,11 +77,6 @@ def characteristics_command(
     return exit_code(result)
 
 
-if TYPE_CHECKING:
-    from compoundkin.kinematics import Motion
-    from compoundkin.structure import Structure
-
-
 @click.command(
     epilog="""\b
 Examples:

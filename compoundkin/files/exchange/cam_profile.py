@@ -183,10 +183,10 @@ def _hold_cutter(pair: ProfileContact, middles: Number, cutter: float) -> None:
         raise InvalidInput(Problem("cutter", what, "take a smaller one"))
 
 
+# --- curves as chords ----------------------------------------------------------------------------------------
+
 # The steps of a curve are halved so often at most: what turns back in one has no error by chords.
 HALVINGS = 12
-
-
 # A chord is taken as short enough where its middle is off by this part of what is allowed: bends are not even.
 MIDDLE = 0.5
 

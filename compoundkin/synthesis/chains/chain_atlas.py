@@ -224,7 +224,7 @@ def _numbers() -> dict[tuple[int, str], int]:
     return {(m, code): k for (_, m), codes in _codes(_lines()).items() for k, code in enumerate(codes, 1)}
 
 
-# --- the list is made --------------------------------------------------------------------------------------
+# --- how the list is made --------------------------------------------------------------------------------------
 
 MOBILITIES = (0, 1, 2, 3)
 # A loop of n links has the mobility n - 3.

@@ -176,7 +176,7 @@ def _circle(first: Number, second: Value, third: Value = None) -> Circle:
             return Circle(a, second.length)
         return Circle(a, np.abs(second - a) if is_point(second) else _number(second))
     b, c = _point(second) - a, _point(third) - a
-    centre = (np.abs(b) ** 2 * c - np.abs(c) ** 2 * b) / (2j * (np.conj(b) * c).imag) * 1.0
+    centre = (np.abs(b) ** 2 * c - np.abs(c) ** 2 * b) / (2j * (np.conj(b) * c).imag)
     return Circle(a + centre, np.abs(centre))
 
 
@@ -311,22 +311,17 @@ _FUNCTIONS: Mapping[str, Callable[..., Value]] = {
     "y": lambda p: _point(p).imag,
 }
 
-
 # Other words for the same functions.
 _ALSO = {"arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "sign": "sgn", "arcTan2": "atan2"}
 
-
 NAME = re.compile(r"[^\W\d_][^\W_]*'*(?:_\{[^}]*\}|_\w)?")
-
 
 _TOKEN = re.compile(
     rf"\s*(?:(?P<number>\d+\.?\d*(?:E[+-]?\d+)?|\.\d+(?:E[+-]?\d+)?)|(?P<name>{NAME.pattern})|(?P<sign><=|>=|==|&&|.))"
 )
 
-
 # No expression that anybody wrote is as long, or has as many brackets in each other.
 _LONGEST, _DEEPEST = 4000, 40
-
 
 _COMPARED: Mapping[str, Callable[[Any, Any], Any]] = {
     "<": np.less, ">": np.greater, "<=": np.less_equal, ">=": np.greater_equal, "≤": np.less_equal,

@@ -8,8 +8,8 @@
   const HALF_LETTER = 3.4; // of a name, along it
   const ROUNDING = 1e-9; // parts of the rates below which a difference is rounding
 
-  // the pole of two links of a changed mechanism, from their velocities:
-  // (x, y, w) of the pole of links i and j at pose k; w is zero at infinity, all are NaN where neither moves against the other
+  // The pole of links i and j of a changed mechanism at pose k, from their velocities: homogeneous (x, y, w), as the page's own
+  // are. w is zero at infinity; all are NaN where neither moves against the other.
   const pole = (links, i, j, k, size) => {
     // the velocity of what is at the origin, and the rate of turning
     const rate = ({ x, y, v }) => (v ? [v[0][k] + v[2][k] * y[k], v[1][k] - v[2][k] * x[k], v[2][k]] : [NaN, NaN, NaN]);
