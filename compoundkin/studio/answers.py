@@ -556,7 +556,8 @@ def _fixes(structure: Structure, fault: Fault) -> Iterator[dict[str, Any]]:
         if isinstance(pair, Stroke):
             yield _fix(f"drive {pair.name}", do="driver", cylinder=pair.name)
             continue
-        yield _fix(f"drive {link} at {pair.letters[0]}", do="driver", point=pair.letters[0], link=link, on=on)
+        words = f"drive {link}{'' if on == FRAME else f' on {on}'} at {pair.letters[0]}"
+        yield _fix(words, do="driver", point=pair.letters[0], link=link, on=on)
 
 
 def _may_be_driven(pair: Pair, fault: Fault, driven: set[tuple[str, str]]) -> bool:

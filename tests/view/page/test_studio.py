@@ -592,7 +592,7 @@ def test_by_the_keyboard_alone(window: Any) -> None:
     mechanism = loads(seen.text)
     assert mechanism.links["frame"].letters == ("A",)
     assert [drive.link for drive in mechanism.drives] == ["bar1"]
-    assert seen.view.get_by_role("button", name="Drive bar2 at B").is_visible()
+    assert seen.view.get_by_role("button", name="Drive bar2 on bar1 at B").is_visible()
     assert seen.complaints == []
 
 
