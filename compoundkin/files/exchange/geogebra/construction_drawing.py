@@ -322,30 +322,6 @@ class _ConstructionDrawing:
         a, b = (self.places[name][0] for name in self.bodies[int(link.split()[1])].points[:2])
         return complex(b - a)
 
-    def _cylinder(
-        self, one: MovingInput, alone: Mapping[str, Number], others: Mapping[str, Number], links: list[DrawnLink],
-        on: dict[str, list[str]],
-    ) -> tuple[DrawnDriver, list[DrawnGuideway]]:  # fmt: skip
-        """Return the driver of a length between two points, with the barrel and rod that it takes."""
-        near = [(a, b) for b in self.moving for a in self._moving.made_of(b)]
-        for start, end in dict.fromkeys([*near, *combinations([*self.fixed, *self.moving], 2)]):
-            if start not in alone or end not in alone or {start, end} <= set(self.fixed):
-                continue
-            row, rest = (np.abs(rows[end] - rows[start]) for rows in (alone, others))
-            if self._follows(row, rest):
-                break
-        else:
-            what = f"{one.name} drives neither the turn of a link, nor a slide, nor the distance of two points"
-            raise InvalidInput(Problem(self.where, what, "drive a crank, a slider or a cylinder"))
-        barrel, rod = f"barrel {one.name}", f"rod {one.name}"
-        links += [DrawnLink(barrel), DrawnLink(rod)]
-        on[start].append(barrel)
-        on[end].append(rod)
-        here, there = (complex(self.places[name][0]) for name in (start, end))
-        key = f"cylinder {one.name}"
-        guide = DrawnGuideway(key, "slide", rod, barrel, end, here, float(np.angle(there - here)))
-        return DrawnDriver(rod, barrel, key, None, self._travel(one, row), ""), [guide]
-
     # --- tried --------------------------------------------------------------------------------------------------------
 
     def tried(self, found: Imported) -> Iterator[str]:

@@ -29,28 +29,16 @@ from compoundkin.files.exchange.geogebra.read_construction import (
 
 # Distances that change by less than this part of the size stay; the drawn places have all their digits.
 STAYS = 1e-8
-
-
 # A constraint adds to those before it if this part of it is new.
 _NEW = 1e-7
-
-
 # So many poses near the drawn one, and over the whole ranges of all drivers.
 _NEAR, _FAR = 24, 40
-
-
 # How far near poses are, as a part of a driver's range.
 _NEARLY = 0.02
-
-
 # A slide without ends is tried so far, as a part of the size.
 _REACH = 0.1
-
-
 # More points than this are not of a mechanism that anybody drew; all pairs of them are looked at.
 _MOST_POINTS = 150
-
-
 # Kinds of objects that show something and move nothing.
 _SHOWN_ONLY = ("text", "image", "button", "boolean", "locus", "list", "textfield", "penstroke", "function", "audio",
                "inlinetext", "video", "angle")  # fmt: skip
