@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import hashlib
 import json
+import os
 import secrets
 import socket
+import tempfile
 import threading
 from contextlib import nullcontext, suppress
 from pathlib import Path
@@ -49,11 +52,10 @@ def command(file: str, no_browser: bool) -> int:
 
     path, text = opened(file)
     # bound here, so that the port is known and nobody else has it
-    listener = socket.socket()
-    listener.bind((HOST, 0))
+    listener, token = _address(HOST, record := _record(path))
     # who comes before the server has started waits
     listener.listen()
-    token = secrets.token_urlsafe(32)
+    _keep(record, listener.getsockname()[1], token)
     served = StudioServer(path, text, token, f"{HOST}:{listener.getsockname()[1]}")
     address = f"http://{served.host}/#{token}"
     say(f"The studio of {path}: {address}")
@@ -75,7 +77,49 @@ def command(file: str, no_browser: bool) -> int:
     finally:
         served.end()
         listener.close()
+        if record is not None:
+            record.unlink(missing_ok=True)
     return 0
+
+
+def _record(path: Path) -> Path | None:
+    """Return where the address of a file's studio is kept while it runs; None where nobody else is kept from it.
+
+    A server that was killed leaves it: the next one has the same address, so that its windows go on.
+    """
+    user = getattr(os, "getuid", lambda: "own")()
+    folder = Path(tempfile.gettempdir()) / f"compoundkin-studio-{user}"
+    try:
+        folder.mkdir(mode=0o700, exist_ok=True)
+        known = folder.lstat()
+    except OSError:
+        return None
+    is_own = not hasattr(os, "getuid") or (known.st_uid == os.getuid() and not known.st_mode & 0o077)
+    return folder / hashlib.sha256(os.fsencode(path.absolute())).hexdigest()[:32] if is_own else None
+
+
+def _address(host: str, record: Path | None) -> tuple[socket.socket, str]:
+    """Return a bound socket and a token: those of a server of the file that was killed, else a free port."""
+    listener = socket.socket()
+    if os.name != "nt":  # there it would take the port of another
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    with suppress(OSError, ValueError, TypeError, KeyError, OverflowError):
+        known = json.loads(record.read_text(encoding="utf-8")) if record is not None else {}
+        token = str(known["token"])
+        listener.bind((host, int(known["port"])))
+        return listener, token
+    listener.bind((host, 0))
+    return listener, secrets.token_urlsafe(32)
+
+
+def _keep(record: Path | None, port: int, token: str) -> None:
+    """Write the address, for this user alone."""
+    if record is not None:
+        with suppress(OSError):
+            record.unlink(missing_ok=True)
+            handle = os.open(record, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+            with os.fdopen(handle, "w", encoding="utf-8") as file:
+                json.dump({"port": port, "token": token}, file)
 
 
 async def _serve(server: Any, listener: socket.socket, served: StudioServer) -> None:

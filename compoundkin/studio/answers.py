@@ -13,7 +13,7 @@ import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import product
 from math import floor, isfinite, log10
 from typing import Any, TypeAlias
@@ -153,6 +153,8 @@ def syntax_of(text: str) -> Syntax:
     return "json" if text.lstrip().startswith("{") else "toml"
 
 
+# A document is asked for its structure, its motion, the next edit: it is read once.
+@lru_cache(maxsize=4)
 def reading_of(text: str) -> Reading:
     """Read a document as far as it goes. Raises InvalidMechanism for a text that is neither TOML nor JSON."""
     whole = parsed(text, syntax_of(text), "")
@@ -652,7 +654,12 @@ def _nearest(motion: Motion, drawing: Placement) -> int:
 
 
 def _edit(document: str, question: Mapping[str, Any]) -> Reply:
-    """Reply the text of the changed document, with what was made."""
+    """Reply the text of the changed document, with what was made; with its structure too where that is asked for."""
+    found = _edited(document, question)
+    return {**found, "structure": _structure(found["text"], {})} if question.get("with") == "structure" else found
+
+
+def _edited(document: str, question: Mapping[str, Any]) -> Reply:
     edit, pose = question.get("edit"), question.get("pose")
     if not isinstance(edit, dict):
         raise InvalidInput(Problem("edit", "there is no edit", 'give {"do": ...} with what it needs'))

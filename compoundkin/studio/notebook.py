@@ -78,11 +78,11 @@ def widget_class() -> Any:
             message = message_in(text)
             if message is None:
                 return opening(self.document) if '"hello"' in text else None
-            if message.sort == "structure":
-                # what follows from a document is asked for whenever it changes
-                self._drawn = message.document
-                self.document = message.document
-            return {**answer(message.document, message.question), "id": message.number}
+            reply = answer(message.document, message.question)
+            # what follows from a document is asked for whenever it changes, or comes with the edit that changes it
+            if message.sort == "structure" or "structure" in reply:
+                self._drawn = self.document = reply.get("text", message.document)
+            return {**reply, "id": message.number}
 
         def _given(self, change: Any) -> None:
             if change["new"] != self._drawn:

@@ -31,6 +31,9 @@ HOST = "127.0.0.1"
 MOST_BYTES, MOST_WAITING, MOST_WINDOWS = 500_000, 24, 8
 # Seconds for a reply, for a process to begin, for the first message of a socket; memory of such a process, in bytes.
 SECONDS, BEGINNING, GREETING, MEMORY = 10.0, 60.0, 15.0, 4 << 30
+# Reports, plots and pages may take longer; what is no motion and not quick has a process of its own.
+LONG = 60.0
+REPORTS, QUICK = "reports", ("structure", "edit", "offers")
 # What a process says when it has begun.
 READY = b"ready\n"
 # Closed for a reason that is the other side's.
@@ -176,16 +179,17 @@ class StudioServer:
     text: str
     token: str
     host: str
-    # what changes the text or says what follows from it never waits for a motion
+    # what changes the text or says what follows from it never waits for a motion, and neither of them for a report
     answerers: Mapping[str, AnsweringProcess] = field(
-        default_factory=lambda: {"motion": AnsweringProcess(), "": AnsweringProcess()}
+        default_factory=lambda: {name: AnsweringProcess() for name in ("motion", "", REPORTS)}
     )
     windows: int = 0
 
     def start(self) -> None:
-        """Start the processes."""
-        for one in self.answerers.values():
-            one.start()
+        """Start the processes that each window needs; that of reports starts when it is first asked."""
+        for name, one in self.answerers.items():
+            if name != REPORTS:
+                one.start()
 
     def end(self) -> None:
         """End the processes."""
@@ -295,12 +299,14 @@ class StudioServer:
         if message.sort == "save":
             reply = await asyncio.to_thread(self._save, message.document, message.mark)
         else:
-            name = message.sort if message.sort in self.answerers else ""
+            name = message.sort if message.sort in self.answerers else "" if message.sort in QUICK else REPORTS
             async with locks[name]:
                 if message.sort != "edit" and newest[message.sort] != message.number:
                     reply = {"is_dropped": True}
                 else:
-                    reply = await asyncio.to_thread(self.answerers[name].ask, message.document, message.question)
+                    seconds = LONG if name == REPORTS else SECONDS
+                    ask = self.answerers[name].ask
+                    reply = await asyncio.to_thread(ask, message.document, message.question, seconds)
         with suppress(RuntimeError):  # the window has gone
             await wire.send_json({**reply, "id": message.number})
 

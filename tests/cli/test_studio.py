@@ -193,6 +193,31 @@ def test_it_ends_at_once_by_an_interrupt_and_leaves_nothing(tmp_path: Path) -> N
         served.end()
 
 
+def test_one_that_was_killed_comes_back_at_its_address(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """So that windows go on, as they know it. One that runs beside it has another; one that ends leaves nothing."""
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    path = tmp_path / "mine.toml"
+    path.write_text(TEXT)
+    first = Served(path)
+    first.entered()
+    (record,) = tmp_path.glob("compoundkin-studio-*/*")
+    assert record.stat().st_mode & 0o077 == record.parent.stat().st_mode & 0o077 == 0
+    beside = Served(path)
+    assert beside.host != first.host
+    assert beside.token != first.token
+    beside.end()
+    again = Served(path)
+    try:
+        assert (again.host, again.token) == (beside.host, beside.token)
+        assert again.entered()[1]["text"] == TEXT
+        again.process.send_signal(signal.SIGINT)
+        again.process.communicate(timeout=20)
+        assert not record.exists()
+    finally:
+        again.end()
+        first.end()
+
+
 def test_what_it_begins_with(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert opened("drawn.toml")[1].endswith('title = "Drawn"\n')

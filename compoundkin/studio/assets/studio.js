@@ -105,7 +105,7 @@ export class Studio {
   }
 
   // one entry for each gesture
-  put(text, isTyped = false) {
+  put(text, isTyped = false, structure = null) {
     // a browser's field has one kind of line ends, a file from Windows another
     if (isTyped && this.text.includes("\r\n")) text = text.replaceAll(/\r?\n/g, "\r\n");
     if (text === this.text) return;
@@ -114,7 +114,7 @@ export class Studio {
     if (this.history.length > MOST_KEPT) this.history.splice(0, this.history.length - MOST_KEPT);
     this.place = this.history.length - 1;
     this.typed = isTyped ? performance.now() : 0;
-    this.#show(isTyped);
+    this.#show(isTyped, structure);
   }
 
   step(by) {
@@ -135,7 +135,7 @@ export class Studio {
     }
     this.edits += 1;
     this.queue = this.queue.then(async () => {
-      const text = this.text, reply = await this.wire.ask({ document: text, question: { ask: "edit", edit, pose } });
+      const text = this.text, reply = await this.wire.ask({ document: text, question: { ask: "edit", edit, pose, with: "structure" } });
       if (text !== this.text) return;
       if (reply.problems?.length) {
         const [{ what, remedy }] = reply.problems;
@@ -146,7 +146,7 @@ export class Studio {
       const { made } = reply;
       if (made?.points?.length && edit.do !== "point") this.canvas.chosen = { point: made.points.at(-1) };
       this.goTo = this.structure?.is_as_drawn ? null : pose;
-      this.put(reply.text);
+      this.put(reply.text, false, reply.structure);
     }).finally(() => { this.edits -= 1; });
     return this.queue;
   }
@@ -187,11 +187,13 @@ export class Studio {
 
   // --- the waves
 
-  #show(isTyped = false) {
+  #show(isTyped = false, structure = null) {
     if (!isTyped || this.part("text").value !== this.text.replaceAll("\r\n", "\n")) this.part("text").value = this.text;
     this.#state();
     this.#keep();
     this.halt();
+    // an edit brings it along; one that is under way is then of an older text, and is asked again
+    if (structure && !this.asking.structure) { this.#structured({ problems: [], ...structure }, this.text); return; }
     this.#latest("structure", (reply, text) => this.#structured(reply, text));
   }
 
