@@ -19,8 +19,9 @@ from compoundkin.dimensional.coupler_atlas import AtlasMatch, best_laid, coupler
 from compoundkin.dimensional.curve_chains import CurveChain, Laying, turn
 from compoundkin.dimensional.tasks import CurveTask
 
-# Designs of the atlas, how many of them are refined, how many answers are given beside so many of each number of links.
-DESIGNS, STARTED, GIVEN, SIMPLE = 200_000, 200, 6, 2
+# Designs of the atlas, how many of them are refined, how many answers are given beside so many of each number of links,
+# and how many of one kind of linkage while others are there.
+DESIGNS, STARTED, GIVEN, SIMPLE, OF_A_KIND = 200_000, 200, 6, 2, 3
 # Lengths that differ by less than this part make no other linkage.
 ALIKE = 0.02
 # Rounds in which what remains farther than this sum of squares is moved and grown.
@@ -167,15 +168,15 @@ def traced(task: CurveTask) -> Candidates:
 
 
 def _different(found: Sequence[FittedCurve], count: int, others: Sequence[Linkage]) -> list[Linkage]:
-    """Return so many of the best as linkages, none like another or like others."""
-    different = list[Linkage]()
-    for one in found:
+    """Return so many of the best as linkages, none like another or like others, few of one kind before all kinds."""
+    different, rest = list[Linkage](), list[Linkage]()
+    for made in (one.linkage for one in found):
         if len(different) == count:
             break
-        made = one.linkage
-        if all(_unlike(made, other) for other in (*others, *different)):
-            different.append(made)
-    return different
+        if all(_unlike(made, other) for other in (*others, *different, *rest)):
+            kinds = [other.title for other in (*others, *different)]
+            (different if kinds.count(made.title) < OF_A_KIND else rest).append(made)
+    return different + rest[: count - len(different)]
 
 
 def _unlike(one: Linkage, other: Linkage) -> bool:

@@ -20,8 +20,9 @@ from compoundkin.model.validation import PRINTABLE, is_name
 
 # Precision positions nearer to each other than this part of their extent are one.
 SAME = 1e-9
-# A drawn curve has so many points at least; its ends meet within this part of its extent.
-FEWEST_OF_CURVE, MEETING = 8, 0.05
+# A drawn curve has so many points at least; its ends meet within this part of its extent, or this part of its longest
+# step: whoever samples a turn leaves the first point out at its end.
+FEWEST_OF_CURVE, MEETING, NEXT = 8, 0.05, 1.2
 # A function's error is seen at so many places of its range.
 WHOLE = 181
 # Preferences among answers, by what they are ranked.
@@ -358,7 +359,8 @@ def curve(points: Any, *, closed: bool | None = None, links: int = 6, tolerance:
     """Return the task of a point that traces a drawn curve; the nearest linkages are found, and how far off they are.
 
     `points` are complex or (n, 2), eight or more along the curve, joined by straight lines. It is `closed` if its ends
-    meet, within a twentieth of its extent, unless this is said; an open one is traced by a part of the driver's turn.
+    meet, within a twentieth of its extent or about as near as points follow each other, unless this is said; an open
+    one is traced by a part of the driver's turn.
     Linkages have four, six or eight `links`; their driver turns fully.
     Within a `tolerance`, the mean distance, or as near as they come.
     Raises InvalidInput for too few points, or other numbers of links.
@@ -373,7 +375,7 @@ def curve(points: Any, *, closed: bool | None = None, links: int = 6, tolerance:
     if len(found) < FEWEST_OF_CURVE:
         what = f"{count_phrase(len(found), 'different point')}: too few for a curve"
         raise InvalidInput(Problem("points", what, f"give {FEWEST_OF_CURVE} or more, or take the task `points`"))
-    meets = abs(found[-1] - found[0]) <= MEETING * extent(found)
+    meets = abs(found[-1] - found[0]) <= max(MEETING * extent(found), NEXT * np.abs(np.diff(found)).max())
     is_closed = bool(meets if closed is None else closed)
     if is_closed and found[-1] == found[0]:
         found = found[:-1]

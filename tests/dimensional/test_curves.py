@@ -169,6 +169,20 @@ def test_designs_that_come_near_limits_are_left_out(monkeypatch: pytest.MonkeyPa
     assert all(one.chain is not matches[0].chain for one in curve_fitting.fitted(matches, EGG))
 
 
+def test_a_sampled_turn_without_its_end_is_closed() -> None:
+    """Its ends are a step apart; a stroke whose ends are farther from each other than its points is open."""
+    assert ck.tasks.curve(EGG).closed
+    assert not ck.tasks.curve(EGG[:-1]).closed
+    assert not ck.tasks.curve(EGG[:-1], closed=False).closed
+
+
+def test_answers_are_of_several_kinds(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(curve_fitting, "GIVEN", 6)
+    titles = [one.title for one in ck.synthesise(ck.tasks.curve(EGG)).candidates]
+    assert max(titles.count(title) for title in titles) <= curve_fitting.OF_A_KIND
+    assert len(set(titles)) >= 3
+
+
 def test_an_open_curve_is_traced_by_a_part_of_the_turn() -> None:
     s = np.linspace(0, 1, 40)
     task = ck.tasks.curve(np.exp(2.0j * s) * (1 + 0.2 * s), links=4)
