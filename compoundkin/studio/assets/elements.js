@@ -13,6 +13,12 @@ export const labelled = (words, field) => element("p", "", { class: "field" }, e
 export const fragment = (html) => {
   const found = document.createDocumentFragment();
   found.append(...new DOMParser().parseFromString(html, "text/html").body.childNodes);
+  // below a heading of the second level; boxes that scroll are reached by keys
+  for (const one of found.querySelectorAll("h4")) one.replaceWith(element("h3", one.textContent));
+  for (const one of found.querySelectorAll("thead th")) if (!one.textContent) one.replaceWith(element("td", ""));
+  for (const one of found.querySelectorAll("div:has(> table)")) {
+    for (const [key, value] of Object.entries({ tabindex: 0, role: "group", "aria-label": "Table" })) one.setAttribute(key, value);
+  }
   return found;
 };
 

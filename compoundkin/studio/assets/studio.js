@@ -34,6 +34,7 @@ export class Studio {
   unmount() {
     this.halt();
     clearTimeout(this.pause);
+    this.gestures.closeMenu();
     this.ended.abort();
     this.results.unmount();
     this.dimensions.unmount();
