@@ -306,15 +306,16 @@ def curve_chain(plan: ChainPlan) -> CurveChain:
     points: dict[str, dict[str, complex]] = {}
     added: list[FreeNumber] = []
     for names, dyad in zip(_NAMES, plan.dyads, strict=False):
-        for name, letter, place in zip(dyad[:2], names[2:4], names.places, strict=True):
+        on_first, on_second = (dyad.first, names.on_first), (dyad.second, names.on_second)
+        for (name, letter), place in zip((on_first, on_second), names.places, strict=True):
             points.setdefault(name, {})[letter] = place
             added += _place(name, letter)
         points.setdefault(names.rod, {})
-        added += [_length(component_names(f"{name}.{names.joint}")[0]) for name in names[:2]]
+        added += [_length(component_names(f"{name}.{names.joint}")[0]) for name in (names.rod, names.lever)]
     points.setdefault(plan.traced, {})[POINT] = _POINT
     items, numbers = _base(plan.with_slider, points)
     for names, dyad in zip(_NAMES, plan.dyads, strict=False):
-        for name, letter in zip(names[:2], names[2:4], strict=True):
+        for name, letter in ((names.rod, names.on_first), (names.lever, names.on_second)):
             items.append(link(name, **{letter: 0, names.joint: names.length}, **points.get(name, {})))
         items.append(mode(dyad.sign, names.lever))
     title = _title(plan)

@@ -1,8 +1,9 @@
 """`answer`: what the studio is asked of a document, and what it replies, as plain data.
 
-Three questions: `structure` is what follows from letters, with where everything is; `motion` is all poses over the
-range of the drivers; `edit` changes the text. What is not yet a mechanism is shown as far as it goes: what cannot be
-part of one is set aside, named with its remedy, and the rest is taken apart.
+`structure` is what follows from letters, with where everything is; `motion` is all poses over the range of the drivers;
+`edit` changes the text, `offers` says which edits could. All other questions are those of `findings`. What is not yet a
+mechanism is shown as far as it goes: what cannot be part of one is set aside, named with its remedy, and the rest is
+taken apart.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from itertools import product
 from math import floor, isfinite, log10
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
@@ -29,6 +30,7 @@ from compoundkin.files.parsed_document import Syntax, located, parsed
 from compoundkin.files.reader import read
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.gaps import gaps
+from compoundkin.model.attributes import DEGREE_SIGN
 from compoundkin.model.geometry import FRAME, Geometry
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import WRITTEN
@@ -36,17 +38,18 @@ from compoundkin.model.pairs.contract import Pair, as_drivable
 from compoundkin.model.pairs.cylinder import Stroke
 from compoundkin.model.pairs.symbols import Groove, Outline, Wheel
 from compoundkin.structure import Fault, Structure, decompose
-from compoundkin.studio.edited_document import Document, Placement
+from compoundkin.studio.edited_document import Document, Placement, written_place
 from compoundkin.studio.edits import edited
 from compoundkin.studio.findings import (
+    DIGITS,
     OF_FILES,
     OF_MECHANISMS,
     DrivenStructure,
+    Reply,
     changed_dimensions,
     chosen_configuration,
+    rounded_row,
 )
-
-Reply: TypeAlias = dict[str, Any]
 
 # A document may have so many characters and links, a motion so many poses.
 MOST_TEXT, MOST_LINKS, MOST_POSES = 200_000, 400, 721
@@ -56,16 +59,17 @@ MOST_OFFERS = 40
 POSES = 361
 # So many times something is set aside before the rest is given up.
 ROUNDS = 40
-# Numbers of a motion are told with so many digits of the mechanism's size: less than a thousandth of a dot.
-DIGITS = 6
+# The drawing of another pose is written with so many digits of its size.
+DRAWN = 9
 
 
 def answer(document: str, question: Mapping[str, Any]) -> Reply:
     """Return what a question asks of a document, the text of a mechanism file in TOML or JSON, as plain data.
 
-    `question["ask"]` is "structure", "motion" or "edit" (`question["edit"]`, with `do` and what it needs, and `pose`:
-    at which pose of the motion the drawing is shown). A reply has `problems`, each with `where`, `what` and `remedy`;
-    nothing is raised for a document that is not yet a mechanism, nor for a question that cannot be answered.
+    `question["ask"]` is "structure", "motion", "edit" (`question["edit"]`, with `do` and what it needs, and `pose`: at
+    which pose of the motion the drawing is shown), or another of QUESTIONS, such as "plots" or "export". A reply has
+    `problems`, each with `where`, `what` and `remedy`; nothing is raised for a document that is not yet a mechanism,
+    nor for a question that cannot be answered.
 
     >>> text = 'format = 1\\ntitle = "Crank"\\n[links]\\nframe.points = ["A"]\\n[drawn]\\nA = [0, 0]\\n'
     >>> bar = {"do": "bar", "from": {"point": "A"}, "to": {"at": [3, 4]}}
@@ -362,7 +366,7 @@ def _first(value: Any) -> float:
     return float(value)
 
 
-# --- the waves ----------------------------------------------------------------------------------------------
+# --- replies ------------------------------------------------------------------------------------------------
 
 
 def _structure(document: str, question: Mapping[str, Any]) -> Reply:
@@ -373,13 +377,7 @@ def _structure(document: str, question: Mapping[str, Any]) -> Reply:
         told = located(error, document) if syntax_of(document) == "toml" else error
         return {"problems": [_problem(one) for one in told.problems], "is_text": False}
     drawing, structure, mechanism = drawing_of(reading), reading.structure, reading.mechanism
-    colours = _colours(structure)
-    own = reading.letters
-    carriers: dict[str, list[str]] = {}
-    for name, letters in own.items():
-        for letter in letters:
-            carriers.setdefault(letter, []).append(name)
-    driven = structure.driven if structure else {}
+    colours, driven = _colours(structure), structure.driven if structure else {}
     return {
         "is_text": True,
         "is_as_drawn": mechanism is None or _is_as_drawn(mechanism),
@@ -392,12 +390,9 @@ def _structure(document: str, question: Mapping[str, Any]) -> Reply:
                 "colour": colours.get(name),
                 "is_aside": name in reading.aside.get("links", ()),
             }
-            for name, letters in own.items()
+            for name, letters in reading.letters.items()
         ],
-        "points": {k: [p.real, p.imag] for k, p in drawing.places.items() if k in carriers},
-        "angles": {name: cmath.phase(along) for name, (_, along) in drawing.poses.items()},
-        "origins": {name: [origin.real, origin.imag] for name, (origin, _) in drawing.poses.items()},
-        "pins": {letter: names for letter, names in carriers.items() if len(names) > 1},
+        **_placed(reading, drawing),
         "pairs": list(_pairs(mechanism, drawing)) if mechanism else [],
         "drives": [
             {
@@ -417,6 +412,20 @@ def _structure(document: str, question: Mapping[str, Any]) -> Reply:
         "faults": list(_faults(reading)),
         "problems": [_problem(one) for one in reading.problems if not _is_fault(one, reading)],
         "moves": bool(structure and not structure.faults and driven and not structure.mechanism.unplaced),
+    }
+
+
+def _placed(reading: Reading, drawing: Placement) -> Reply:
+    """Return where points and links are, and the pins: points that several links have."""
+    carriers: dict[str, list[str]] = {}
+    for name, letters in reading.letters.items():
+        for letter in letters:
+            carriers.setdefault(letter, []).append(name)
+    return {
+        "points": {k: [p.real, p.imag] for k, p in drawing.places.items() if k in carriers},
+        "angles": {name: cmath.phase(along) for name, (_, along) in drawing.poses.items()},
+        "origins": {name: [origin.real, origin.imag] for name, (origin, _) in drawing.poses.items()},
+        "pins": {letter: names for letter, names in carriers.items() if len(names) > 1},
     }
 
 
@@ -503,7 +512,8 @@ def _faults(reading: Reading) -> Iterator[dict[str, Any]]:
             )
     drives = reading.document.get("drives")
     for name in reading.aside.get("drives", ()):
-        table = drives[int(name[7:-1])] if isinstance(drives, list) else {}
+        indexed = _INDEXED.match(name)
+        table = drives[int(indexed[2])] if isinstance(drives, list) and indexed else {}
         called = str(table.get("name", table.get("link", ""))) if isinstance(table, dict) else ""
         text = next((one.what for one in reading.problems if one.where.startswith(name)), "it drives nothing")
         fixes = [_fix(f"remove the driver {called}", do="delete", drive=called)] if called else []
@@ -578,44 +588,38 @@ def _motion(document: str, question: Mapping[str, Any]) -> Reply:
     good = motion.failed[0] == 0
     if len(good) > MOST_POSES:
         raise InvalidInput(Problem("drives", f"there are more than {MOST_POSES} poses", "take fewer values"))
+    places, shape = _known_places(motion), motion.failed.shape
     digits = DIGITS - floor(log10(motion.size))
 
     def row(values: Number, digits: int = digits) -> list[float | None]:
-        found = np.round(np.broadcast_to(np.atleast_2d(values), (motion.failed.shape))[0], digits).tolist()
-        return [None if not isfinite(one) else one for one in found]
+        return rounded_row(np.broadcast_to(np.atleast_2d(values), shape)[0], digits)
 
-    turned = {name for pair in motion.mechanism.written_pairs for name in pair.members} - {FRAME}
-    names = list(motion.drives)
-    places = _known_places(motion)
+    drives, origins = dict[str, Reply](), dict[str, list[Any]]()
+    for name in motion.drives:
+        values, is_angle = motion.inputs.drives[name][0], motion.structure.driven_angles[name]
+        unit = DEGREE_SIGN if is_angle else motion.mechanism.unit
+        drives[name] = {"values": row(np.rad2deg(values) if is_angle else values, DIGITS), "unit": unit}
+    for name in dict.fromkeys(name for pair in motion.mechanism.written_pairs for name in pair.members):
+        if name != FRAME:
+            z, u = motion.poses[name].z.c[0], motion.poses[name].u.c[0]
+            origins[name] = [row(np.real(z)), row(np.imag(z)), row(np.angle(u), DIGITS)]
     return {
         "poses": len(good),
-        "drives": {
-            name: {
-                "values": row(np.rad2deg(v) if motion.structure.driven_angles[name] else v, 6),
-                "unit": "°" if motion.structure.driven_angles[name] else motion.mechanism.unit,
-            }
-            for name in names
-            for v in [np.broadcast_to(motion.inputs.drives[name][0], motion.failed.shape)]
-        },
+        "drives": drives,
         "points": {letter: [row(place.real), row(place.imag)] for letter, place in places.items()},
-        "origins": {
-            name: [row(z.real), row(z.imag), row(np.angle(u), DIGITS)]
-            for name in turned
-            for z, u in [
-                [np.broadcast_to(s.c[0], motion.failed.shape) for s in (motion.poses[name].z, motion.poses[name].u)]
-            ]
-        },
+        "origins": origins,
         "assembled": [int(one) for one in good],
         "start": _nearest(motion, drawing_of(reading)),
-        "gaps": [
-            {
-                **{"from": gap.first, "to": gap.last, "why": gap.reason, "links": list(gap.links)},
-                "circles": [] if gap.pair else list(_circles(motion, gap.links)),
-            }
-            for gap in (gaps(motion) if not good.all() else ())
-        ],
+        "gaps": [] if good.all() else list(_gaps(motion)),
         "problems": [],
     }
+
+
+def _gaps(motion: Motion) -> Iterator[dict[str, Any]]:
+    """Yield the poses that are not assembled, with the reason, and the circles that do not meet."""
+    for gap in gaps(motion):
+        circles = [] if gap.pair else list(_circles(motion, gap.links))
+        yield {"from": gap.first, "to": gap.last, "why": gap.reason, "links": list(gap.links), "circles": circles}
 
 
 def _known_places(motion: Motion) -> dict[str, Number]:
@@ -672,12 +676,10 @@ def _edited(document: str, question: Mapping[str, Any]) -> Reply:
     drawing = drawing_of(reading, pose if is_at else None)
     if is_at and isinstance(wanted.get("drawn"), dict):
         # who changes it at another pose draws that one
-        scale = Placement(drawing.places, {})
-        digits = 9 - floor(log10(scale.size))
+        digits = DRAWN - floor(log10(drawing.size))
         for letter in wanted["drawn"]:
             if letter in drawing.places:
-                place = drawing.places[letter]
-                wanted["drawn"][letter] = [round(place.real, digits) + 0.0, round(place.imag, digits) + 0.0]
+                wanted["drawn"][letter] = written_place(drawing.places[letter], digits)
     if edit.get("do") == "configuration":
         # the drawing chooses it from now on
         wanted["drawn"] = chosen_configuration(_shown(reading), str(edit.get("name")), pose)

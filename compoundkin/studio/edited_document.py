@@ -202,6 +202,11 @@ def refused(what: str, remedy: str = "") -> InvalidInput:
     return InvalidInput(Problem("", what, remedy))
 
 
+def written_place(place: complex, digits: int) -> list[float]:
+    """Return the coordinates of a place to so many decimals, none of them -0."""
+    return [round(place.real, digits) + 0.0, round(place.imag, digits) + 0.0]
+
+
 def place_in(value: Any) -> complex:
     """Return a place out of a question. Raises InvalidInput."""
     try:

@@ -163,11 +163,9 @@ def _cylinder(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
 
 def _turn(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     """Give a slide on the frame another direction."""
-    name, angle = word_in(edit, "pair"), edit.get("angle")
-    if isinstance(angle, bool) or not isinstance(angle, int | float) or not isfinite(angle):
-        raise InvalidInput(Problem("angle", f"{angle!r} is no angle", "give degrees"))
+    name, angle = word_in(edit, "pair"), _angle_in(edit.get("angle"))
     for array, _, table in sheet.tables():
-        if array == "slides" and table.get("name", f"{table.get('link')}/{table.get('on')}") == name:
+        if array == "slides" and called(table, array) == name:
             if table.get("on") != FRAME:
                 raise refused(f"{name} has the direction of {table.get('on')}", "turn that link")
             table.pop("toward", None)
@@ -284,7 +282,15 @@ def _made_profile(
     return made | {"pivot": sheet.pair(to), "arm": number(abs(arm)), "side": side}
 
 
+def _angle_in(value: Any) -> float:
+    """Return an angle out of a question, degrees. Raises InvalidInput."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
+        raise InvalidInput(Problem("angle", f"{value!r} is no angle", "give degrees"))
+    return value
+
+
 def _positive(edit: Edit, key: str) -> float:
+    """Return a number from 0 on out of a question, 0 where there is none. Raises InvalidInput."""
     value = edit.get(key, 0)
     if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value) or value < 0:
         raise InvalidInput(Problem(key, f"{value!r} is no number from 0 on", f"give {key} = 10"))
@@ -469,13 +475,8 @@ def _slide(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     table: dict[str, Any] = {"link": sheet.new_name(BLOCK), "on": on, "at": letter}
     is_as_drawn = sheet.is_as_drawn
     if on == FRAME:
-        if FRAME not in sheet.links:
-            sheet.links[FRAME] = {"points": [] if is_as_drawn else {}}
-        angle = edit.get("angle", 0)
-        if not isinstance(angle, int | float) or not isfinite(angle):
-            raise InvalidInput(Problem("angle", f"{angle!r} is no angle", "give degrees"))
-        guide = sheet.new_letter()
-        sheet.put(FRAME, guide, place)
+        guide, angle = sheet.new_letter(), _angle_in(edit.get("angle", 0))
+        sheet.grounded(guide, place)
         table |= {"through": guide, "angle": sheet.number(angle)}
     else:
         letters = list(sheet.points(on))
@@ -573,7 +574,7 @@ def _tidy(sheet: EditedDocument) -> None:
 
     _after(sheet, sheet.drop(is_lost), "")
     carried = {letter for name in sheet.links for letter in sheet.points(name)}
-    pairs = {t.get("name", f"{t.get('link')}/{t.get('on')}") for _, _, t in sheet.tables()}
+    pairs = {called(t, array) for array, _, t in sheet.tables()}
     drives = {t.get("name", t.get("link", "")) for array, _, t in sheet.tables() if array == "drives"}
     owners = carried | set(sheet.links) | pairs | drives
 

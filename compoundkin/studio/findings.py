@@ -1,4 +1,4 @@
-"""The third wave: what the package finds of a mechanism, in its own reports, plots, pictures and files.
+"""What the studio shows beside the drawing: reports, plots, pictures and files of a mechanism, as the package has them.
 
 Nothing is computed or drawn in a second way here. Also what another program's file, a link, a name of the catalog or
 the lengths of a linkage become as a document.
@@ -25,6 +25,7 @@ from compoundkin.kinematics import Motion, solve
 from compoundkin.model.attributes import AXES, TABULATED, VELOCITY, Kind
 from compoundkin.model.geometry import FRAME
 from compoundkin.structure import Structure
+from compoundkin.studio.edited_document import written_place
 
 Reply: TypeAlias = dict[str, Any]
 
@@ -32,7 +33,7 @@ Reply: TypeAlias = dict[str, Any]
 MOST_PICTURES, MOST_CENTRES = 24, 12
 # So many plots are drawn at once.
 MOST_PLOTS = 8
-# Numbers on the canvas are told with so many digits of the mechanism's size.
+# Numbers on the canvas are told with so many digits of the mechanism's size: less than a thousandth of a dot.
 DIGITS = 6
 # A drawing that chooses a configuration keeps dimensions to so many digits of its size.
 EXACT = 12
@@ -93,14 +94,11 @@ def changed_dimensions(
     changed = with_dimensions(mechanism, values)
     digits = EXACT - floor(log10(mechanism.geometry.size))
 
-    def written(place: complex) -> list[float]:
-        return [round(place.real, digits) + 0.0, round(place.imag, digits) + 0.0]
-
     for link in dict.fromkeys(name.partition(".")[0] for name in values):
         points = document["links"][link].get("points")
         for letter in points if isinstance(points, dict) else ():
             if any(f"{link}.{letter}.{axis}" in values for axis in AXES):
-                points[letter] = written(complex(np.ravel(changed.geometry.points[link][letter])[0]))
+                points[letter] = written_place(complex(np.ravel(changed.geometry.points[link][letter])[0]), digits)
     if "drawn" not in document:
         return
     motion = solve(changed, shown.at(pose), order=0)
@@ -110,7 +108,7 @@ def changed_dimensions(
         )
     for letter in document["drawn"]:
         if letter in motion.points:
-            document["drawn"][letter] = written(complex(np.ravel(motion.points[letter].position)[0]))
+            document["drawn"][letter] = written_place(complex(np.ravel(motion.points[letter].position)[0]), digits)
 
 
 # --- reports ------------------------------------------------------------------------------------------------
@@ -201,10 +199,7 @@ def chosen_configuration(shown: DrivenStructure, name: str, pose: object) -> dic
     if name not in found:
         raise UnknownName(Problem(name, "there is no such configuration here", suggestion(name, list(found))))
     digits = EXACT - floor(log10(shown.structure.mechanism.geometry.size))
-    return {
-        letter: [round(place.real, digits) + 0.0, round(place.imag, digits) + 0.0]
-        for letter, place in found[name].points.items()
-    }
+    return {letter: written_place(place, digits) for letter, place in found[name].points.items()}
 
 
 def every_circuit(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
@@ -237,9 +232,11 @@ def overlays(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
         centres = instant_centres(motion)
         for pair in centres:
             place = np.broadcast_to(centres[pair].point, motion.failed.shape)[0]
-            found[", ".join(pair)] = [_row(place.real, fine), _row(place.imag, fine)]
+            found[", ".join(pair)] = [rounded_row(place.real, fine), rounded_row(place.imag, fine)]
     return {
-        "velocities": {k: [_row(v.real / fastest, DIGITS), _row(v.imag / fastest, DIGITS)] for k, v in moving.items()}
+        "velocities": {
+            k: [rounded_row(v.real / fastest, DIGITS), rounded_row(v.imag / fastest, DIGITS)] for k, v in moving.items()
+        }
         if fastest
         else {},
         "centres": found,
@@ -247,7 +244,8 @@ def overlays(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
     }
 
 
-def _row(values: Number, digits: int) -> list[float | None]:
+def rounded_row(values: Number, digits: int) -> list[float | None]:
+    """Return numbers in a row as JSON has them: rounded, and None for those that are not finite."""
     rounded = np.round(np.asarray(values, dtype=float), digits)
     return [float(one) if isfinite(one) else None for one in np.ravel(rounded)]
 

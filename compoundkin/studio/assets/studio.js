@@ -6,6 +6,9 @@ import { Gestures } from "./gestures.js";
 import { Results } from "./results.js";
 
 const MOST_KEPT = 200, TYPING = 900, PAUSE = 250;
+// Keys for what is under the pointer or chosen, and for tools.
+const ACTS = { g: "ground", d: "driver", s: "slide", p: "point", w: "weld", r: "gear", k: "cam", t: "trace", l: "lock", delete: "delete", backspace: "delete" };
+const TOOLS = { b: "draw", v: "move", c: "cylinder" };
 
 export class Studio {
   // `root` is the element of the window; `kept` is the history of before and keeps what it is given. A window that is
@@ -186,7 +189,7 @@ export class Studio {
     this.#state();
   }
 
-  // --- the waves
+  // --- what follows from the text: the structure, then the motion
 
   #show(isTyped = false, structure = null) {
     if (!isTyped || this.part("text").value !== this.text.replaceAll("\r\n", "\n")) this.part("text").value = this.text;
@@ -386,7 +389,7 @@ export class Studio {
 
   choose(tool) {
     this.gestures.choose(tool);
-    for (const one of ["draw", "move", "cylinder"]) this.part(`tool-${one}`).setAttribute("aria-pressed", String(one === tool));
+    for (const one of Object.values(TOOLS)) this.part(`tool-${one}`).setAttribute("aria-pressed", String(one === tool));
   }
 
   #listen() {
@@ -400,9 +403,7 @@ export class Studio {
     on("fit", () => this.canvas.fit());
     on("play", () => this.play());
     on("home", () => { this.halt(); this.canvas.pose = null; this.canvas.draw(); this.#driver(); });
-    on("tool-draw", () => this.choose("draw"));
-    on("tool-move", () => this.choose("move"));
-    on("tool-cylinder", () => this.choose("cylinder"));
+    for (const tool of Object.values(TOOLS)) on(`tool-${tool}`, () => this.choose(tool));
     on("add-photo", () => this.part("photo").click());
     this.part("photo").addEventListener("change", ({ target }) => { this.gestures.photograph(target.files[0]); target.value = ""; });
     for (const what of ["ground", "driver", "slide", "gear", "cam", "lock", "delete"]) {
@@ -430,15 +431,8 @@ export class Studio {
     else if (isCommand && key === "a" && !isText) this.gestures.pickAll();
     else if (isText || isCommand || event.altKey || (isButton && [" ", "enter", "arrowleft", "arrowright", "arrowup", "arrowdown"].includes(key))) return;
     else if (key === "contextmenu" || (key === "f10" && event.shiftKey)) this.gestures.menuOfKey();
-    else if (key in { w: 1, t: 1, l: 1, r: 1, k: 1 }) this.gestures.act({ w: "weld", t: "trace", l: "lock", r: "gear", k: "cam" }[key]);
-    else if (key === "c") this.choose("cylinder");
-    else if (key === "g") this.gestures.act("ground");
-    else if (key === "d") this.gestures.act("driver");
-    else if (key === "s") this.gestures.act("slide");
-    else if (key === "p") this.gestures.act("point");
-    else if (key === "delete" || key === "backspace") this.gestures.act("delete");
-    else if (key === "b") this.choose("draw");
-    else if (key === "v") this.choose("move");
+    else if (key in ACTS) this.gestures.act(ACTS[key]);
+    else if (key in TOOLS) this.choose(TOOLS[key]);
     else if (key === "n") this.gestures.bar();
     else if (key === "f") this.canvas.fit();
     else if (key === " ") this.play();
