@@ -124,7 +124,9 @@ def test_the_page_on_compiled_programs_is_true(tmp_path: Path) -> None:
         assert float(angles[0] - angles[1]) / 2e-4 == pytest.approx(float(slope[at]), rel=1e-7)
 
 
-@pytest.mark.parametrize("page", ["studies.md", "optimisation.md", "exchange/index.md", "exchange/geogebra.md"])
+@pytest.mark.parametrize(
+    "page", ["studies.md", "optimisation.md", "exchange/index.md", "exchange/geogebra.md", "from-a-sketch.md"]
+)
 def test_the_pages_on_many_designs_and_other_programs_print_what_they_show(
     page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

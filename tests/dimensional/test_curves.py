@@ -406,3 +406,11 @@ def test_the_verb_says_what_is_wrong_with_a_file(tmp_path: Path) -> None:
     result = run("trace", str(tmp_path / "none.csv"))
     assert result.exit_code == 2
     assert "cannot be read" in result.output
+
+
+def test_a_curve_sampled_around_is_closed_a_stroke_is_open() -> None:
+    turn = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)
+    eight = 40 * np.sin(turn) + 18j * np.sin(2 * turn)
+    assert ck.tasks.curve(eight).closed
+    assert not ck.tasks.curve(eight[:50]).closed
+    assert not ck.tasks.curve(np.linspace(0, 1 + 1j, 30)).closed
