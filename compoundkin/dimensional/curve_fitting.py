@@ -23,7 +23,7 @@ from compoundkin.dimensional.tasks import CurveTask
 # and how many of one kind of linkage while others are there.
 DESIGNS, STARTED, GIVEN, SIMPLE, OF_A_KIND = 200_000, 200, 6, 2, 3
 # Lengths that differ by less than this part make no other linkage.
-ALIKE = 0.02
+ALIKE = 0.1
 # Rounds in which what remains farther than this sum of squares is moved and grown.
 ROUNDS, NEAR = 3, 2e-4
 # How many of the best are moved, to how many places each, and how far, from and to.
