@@ -105,14 +105,16 @@ def test_velocities_and_centres_are_those_of_the_motion() -> None:
 
 
 def test_every_form_is_offered_and_written_or_refused_with_reasons() -> None:
-    text = shipped_text("slider-crank")
+    text, refused = shipped_text("slider-crank"), dict[str, str]()
     for form in reply("", "forms")["forms"]:
         found = answer(text, {"ask": "export", "to": form["name"], "name": "mine"})
         if found["problems"]:
-            assert all(one["what"] for one in found["problems"])
+            refused[form["name"]] = found["problems"][0]["what"]
         else:
             assert found["suffix"] == form["suffix"]
             assert len(b64decode(found["content"])) > 20
+    # what needs an extra may be refused too
+    assert {name: why for name, why in refused.items() if name != "dxf"} == {"cam-profile": "it has no cam"}
     assert answer(text, {"ask": "export", "to": "pyton"})["problems"][0]["remedy"] == "did you mean 'python'?"
 
 

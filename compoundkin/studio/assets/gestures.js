@@ -164,10 +164,16 @@ export class Gestures {
 
   #snapWords({ to }) { return to.length ? `: ${to.map((one) => one.words).join(", ")}` : ""; }
 
+  // what an edit is told of locks: nothing where there are none
+  get #locks() {
+    const { locks } = this.canvas;
+    return locks.length ? { locks } : {};
+  }
+
   #moveEdit() {
-    const { locks } = this.canvas, entries = Object.entries(this.held.to);
+    const entries = Object.entries(this.held.to);
     const what = entries.length > 1 ? { points: this.held.to } : { point: entries[0][0], to: entries[0][1] };
-    return { do: "move", ...what, ...(locks.length ? { locks } : {}) };
+    return { do: "move", ...what, ...this.#locks };
   }
 
   #tear(at) {
@@ -219,8 +225,8 @@ export class Gestures {
   }
 
   #lengthEdit() {
-    const { link, letter, from, length } = this.held, { locks } = this.canvas;
-    return { do: "lengthen", link, point: letter, from, length, ...(locks.length ? { locks } : {}) };
+    const { link, letter, from, length } = this.held;
+    return { do: "lengthen", link, point: letter, from, length, ...this.#locks };
   }
 
   #turn(at) {
@@ -302,7 +308,7 @@ export class Gestures {
     if (isDrawing) { this.#drop(held.last); this.stop(); } else {
       const length = Number(this.typed), grip = canvas.drawn;
       this.typed = "";
-      if (grip) this.studio.edit({ do: "lengthen", link: grip.link, point: grip.letter, from: grip.from, length, ...(canvas.locks.length ? { locks: canvas.locks } : {}) });
+      if (grip) this.studio.edit({ do: "lengthen", link: grip.link, point: grip.letter, from: grip.from, length, ...this.#locks });
     }
     return true;
   }
