@@ -472,10 +472,10 @@ def test_efforts_have_their_mean() -> None:
 
 def test_no_line_joins_what_a_load_is_before_and_after_it_acts() -> None:
     """The stone presses while the jaw closes: between its dead points, 90 and 270 degrees to half a step."""
-    (effort, force) = ck.plot(ck.force_analysis(solved("jaw-crusher-loaded")), "T.velocity.x", "D.force.x").figure.axes
+    (speed, force) = ck.plot(ck.force_analysis(solved("jaw-crusher-loaded")), "T.velocity.x", "D.force.x").figure.axes
     ((x, y),) = curves(force).values()
     breaks = np.flatnonzero(np.isnan(y))
-    ((at, velocity),) = curves(effort).values()
+    ((at, velocity),) = curves(speed).values()
     signs = at[:-1][np.sign(velocity[:-1]) * np.sign(velocity[1:]) < 0]
     np.testing.assert_allclose(x[breaks], signs, atol=3.0)
     assert len(breaks) == 2

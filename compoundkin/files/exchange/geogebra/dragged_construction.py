@@ -144,8 +144,6 @@ class Construction:
 
 # So many units of its last digit an angle may be off once it has been a direction, or the last digit of a turn.
 _ULPS = 4.0
-
-
 _TURN = 360.0
 
 
@@ -324,11 +322,7 @@ def _part(length: str, angle: Angle, coordinate: str) -> str:
 
 # A letter or two with a number behind is the name of a cell of its spreadsheet, so that the number becomes an index.
 _PLAIN = re.compile(r"([A-Z][A-Za-z]*'*)(\d*)")
-
-
 _FOREIGN = re.compile(r"[^0-9A-Za-z\u00c0-\u024f\u0391-\u03c9]+")
-
-
 # What its parser takes for something else.
 _RESERVED = frozenset({"NaN", "Undefined", "Infinity", "Pi", "True", "False"})
 

@@ -172,8 +172,6 @@ def _add_group(placed: PlacedBodies, sides: PairSides, solver: GroupSolver, chos
 
 # What rounding leaves of values, as a part of their range: one at its end seems beyond it by so much.
 _ROUNDING = 1e-9
-
-
 # Points nearer to each other than this part of the size are one.
 _SAME = 1e-9
 
@@ -294,16 +292,10 @@ def _notes(shown: PosedMechanism, build: Construction) -> Iterator[str]:
 
 # The window in pixels, and how much of it is kept free on each side.
 _WIDTH, _HEIGHT, _MARGIN = 900, 600, 80
-
-
 # The desktop program has its list of objects beside it, its menus above and below.
 _LIST, _MENUS = 280, 200
-
-
 # Sliders are put one below the other, in pixels.
 _SLIDER_WIDTH, _SLIDER_LEFT, _SLIDER_TOP, _SLIDER_EVERY = 300, 30, 40, 45
-
-
 _TURN = 360.0
 
 

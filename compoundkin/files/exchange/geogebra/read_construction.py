@@ -36,18 +36,10 @@ from compoundkin.files.exchange.geogebra.construction_commands import (
 
 # The name by which files of ours are known: all their sliders are drivers.
 AUTHOR = "compoundkin"
-
-
 ARCHIVE = b"PK\x03\x04"
-
-
 _INSIDE = "geogebra.xml"
-
-
 # The largest construction that is read, unpacked; an archive may say anything of what is in it.
 _MOST_UNPACKED = 8_000_000
-
-
 # More objects than this take longer to look at than anybody waits.
 _MOST_STEPS = 1500
 

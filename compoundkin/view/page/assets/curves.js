@@ -8,7 +8,7 @@
   const SAME = 1e-6; // of the way from pose to pose: nearer, a place is the pose
   const SEEN = 3e-7; // values are packed with seven digits: a range that is smaller is none
   const STEPS = 6; // lines for a cubic on an axis that is not even
-  const SUDDEN = 20, LARGE = 0.02; // a step so many times those beside it, and this part of the range, is a switch
+  const SUDDEN = 20, LARGE = 0.02; // a step so many times those beside it, and this part of the range, is a switch: as in drawn plots
   const ALIKE = 0.9, FINE = 16; // vectors that turn more from pose to pose have so many places between for their length
 
   // --- polynomials through some knots, by Lagrange's formula ---------------------------------------------------------

@@ -79,8 +79,11 @@ class LiveData:
     @cached_property
     def program(self) -> PageProgram:
         """What computes it, forces too where it can."""
-        program = PageProgram.of(self.motion, [*self._told()])
-        return program if self.forces is None else self.forces.within(program)
+        return self._without_forces if self.forces is None else self.forces.program
+
+    @cached_property
+    def _without_forces(self) -> PageProgram:
+        return PageProgram.of(self.motion, [*self._told()])
 
     @cached_property
     def forces(self) -> RecordedForces | None:
@@ -88,7 +91,7 @@ class LiveData:
         if self.drawn is None or self.drawn.forces.friction_forces is not None or self.drawn.forces.relaxed:
             return None
         try:
-            found = RecordedForces.of(PageProgram.of(self.motion, [*self._told()]), self.drawn, self.motion)
+            found = RecordedForces.of(self._without_forces, self.drawn, self.motion)
         except (CompoundkinError, TypeError, ValueError, AttributeError):
             # loads that are no straight-line arithmetic of one pose
             return None
@@ -362,13 +365,7 @@ class RecordedForces:
             place, wrench = acting[course.shown.description]
             one = mechanism.number(place), mechanism.number(wrench.force), mechanism.number(wrench.about(place))
             nodes.append((one[0].real.x, one[0].imag.x, one[1].real.x, one[1].imag.x, one[2].x))
-        program.with_more([k for one in nodes for k in one], at.rows)
-        return cls(program, drawn, tuple(nodes), at.rows)
-
-    def within(self, program: PageProgram) -> PageProgram:
-        """Return a program that computes them too. It is recorded anew, as nodes of its own graph."""
-        found = RecordedForces.of(program, self.drawn, program.motion)
-        return program.with_more([k for one in found.nodes for k in one], found.rows)
+        return cls(program.with_more([k for one in nodes for k in one], at.rows), drawn, tuple(nodes), at.rows)
 
     def agrees(self, chosen: Number) -> bool:
         """Return whether the program reproduces them, wherever it has finite numbers."""
