@@ -521,9 +521,8 @@ def _faults(reading: Reading) -> Iterator[dict[str, Any]]:
     if structure is None:
         return
     for fault in structure.faults:
-        yield _fault(
-            ", ".join(fault.links), fault.text, fault.remedy, list(_fixes(structure, fault)), list(fault.links)
-        )
+        told = _fault(", ".join(fault.links), fault.text, fault.remedy, list(_fixes(structure, fault)))
+        yield {**told, "links": list(fault.links), "kind": fault.kind}
     if not structure.faults and not structure.mechanism.drives and len(own) > 1:
         yield _fault("", structure.mobility.verdict, "take a bar out, or leave it: it stands still")
     if structure.mechanism.unplaced:
@@ -539,8 +538,8 @@ def _is_fault(problem: Problem, reading: Reading) -> bool:
     return is_of_link or is_of_point or head.startswith("drives[")
 
 
-def _fault(where: str, what: str, remedy: str, fixes: list[Any] | None = None, links: list[str] | None = None) -> Reply:
-    return {"where": where, "what": what, "remedy": remedy, "fixes": fixes or [], "links": links or [where]}
+def _fault(where: str, what: str, remedy: str, fixes: list[Any] | None = None) -> Reply:
+    return {"where": where, "what": what, "remedy": remedy, "fixes": fixes or [], "links": [where], "kind": ""}
 
 
 def _fix(words: str, **edit: str) -> dict[str, Any]:

@@ -154,6 +154,13 @@ def test_too_many_and_wrong_drivers_are_set_aside_by_name() -> None:
     assert edited(text, reply["faults"][1]["fixes"][0]["edit"]) == text.replace('[[drives]]\nlink = "bar9"\n', "")
 
 
+def test_links_that_are_held_too_often_are_told_by_kind() -> None:
+    (fault,) = structure(edited(START, *FOUR_BAR, {"do": "driver", "point": "D"}))["faults"]
+    assert (fault["kind"], set(fault["links"])) == ("over", {"bar1", "bar2", "bar3"})
+    (fault,) = structure(edited(START, *FOUR_BAR[:5]))["faults"]
+    assert fault["kind"] == "under"
+
+
 def test_wrong_parts_are_named_at_their_places_and_the_rest_is_shown() -> None:
     text = edited(START, *FOUR_BAR) + '[[expected]]\nat = { bar1 = 0 }\nquantity = "Z.x"\nvalue = 1\ntolerance = 1\n'
     reply = structure("colour = 3\n" + text)

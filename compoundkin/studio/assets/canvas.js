@@ -197,8 +197,8 @@ export class Canvas {
     }).map((one) => one.name);
   }
 
-  // lines and circles that a place can be snapped to: for a bar from a place, or for a point that is moved
-  #curves(from, letters, pivots) {
+  // lines and circles that a place can be snapped to: about the pivots of a bar, without the letters that are moved
+  #curves(letters, pivots) {
     const found = [], links = (this.structure?.links ?? []).filter((one) => one.name !== "frame" && one.points.length > 1);
     const sides = links.flatMap(({ name, points }) => points.slice(1).map((one, k) => ({ name, points: [points[k], one], ends: [this.place(points[k]), this.place(one)] })));
     const known = sides.filter(({ ends: [a, b] }) => a && b && distance(a, b) > 0);
@@ -225,9 +225,9 @@ export class Canvas {
   }
 
   // the place that a gesture means: what is near, snapped to, with what it was snapped to
-  snapped(at, { from = null, letters = [], pivots = [] } = {}) {
+  snapped(at, { letters = [], pivots = [] } = {}) {
     const here = this.plane(at), near = (p) => distance(p, here) * this.view.scale;
-    const close = this.#curves(from, letters, pivots).map((one) => ({ ...one, foot: nearest(one, here) }))
+    const close = this.#curves(letters, pivots).map((one) => ({ ...one, foot: nearest(one, here) }))
       .filter((one) => near(one.foot) <= NEAR).sort((a, b) => near(a.foot) - near(b.foot) - (a.is_own ? 1 : 0) + (b.is_own ? 1 : 0));
     if (!close.length) return { place: this.rounded(here), to: [] };
     for (const [k, one] of close.entries()) {
@@ -290,7 +290,7 @@ export class Canvas {
     this.#photograph();
     if (!this.structure) return;
     const { links, pins, pairs, faults } = this.structure;
-    const wrong = new Set(faults.filter((one) => one.what.includes("too many")).flatMap((one) => one.links));
+    const wrong = new Set(faults.filter((one) => one.kind === "over").flatMap((one) => one.links));
     this.#traces();
     for (const pair of pairs) this.#pair(pair);
     for (const link of links) {
@@ -379,7 +379,7 @@ export class Canvas {
   // the paths of points, also of the one that is chosen
   #traces() {
     if (!this.motion?.poses) return;
-    const frame = this.structure.links.find((one) => one.name === "frame")?.points ?? [];
+    const { frame } = this;
     for (const [letter, [xs, ys]] of Object.entries(this.motion.points)) {
       if (!this.isTraced(letter) && (this.chosen?.point !== letter || frame.includes(letter))) continue;
       let path = "", pen = "M";

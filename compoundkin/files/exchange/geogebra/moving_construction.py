@@ -104,6 +104,7 @@ class MovingConstruction:
         self.bodies: list[RigidBody] = []
         self.guides: list[PointGuide] = []
         self.ratios: list[TurnRatio] = []
+        self._known_parts: dict[str, set[str]] = {}
 
     # --- what moves it ------------------------------------------------------------------------------------------------
 
@@ -426,10 +427,6 @@ class MovingConstruction:
         if name not in self._known_parts:
             self._known_parts[name] = {self.same.get(n, n) for n in (*self.made_of(name), *self.needs.get(name, ()))}
         return self._known_parts[name]
-
-    @property
-    def _known_parts(self) -> dict[str, set[str]]:
-        return self.__dict__.setdefault("_made", {})  # type: ignore[no-any-return]
 
     def _straight(self, row: Number) -> complex | None:
         """Return the direction of a path if it is straight, as long as it goes anywhere."""
