@@ -253,7 +253,7 @@ _SIX_BARS_WITH_SLIDER = {(COUPLER, FRAME): "Stephenson III with slider", (CRANK,
 _POINT = 1.0 + 0.8j
 
 
-class _Names(NamedTuple):
+class _DyadNames(NamedTuple):
     """The links of an added dyad, its points on the two links that it lies on, and its joint.
 
     `places` are those points, `length` is that of its links in the reference drawing.
@@ -269,8 +269,8 @@ class _Names(NamedTuple):
 
 
 _NAMES = (
-    _Names(ROD, LEVER, "E", "F", "G", (1.0 + 1.0j, 0.5 + 1.5j), 2.5),
-    _Names("rod2", "lever2", "H", "J", "K", (1.2 + 0.5j, 0.7 + 1.1j), 4.5),
+    _DyadNames(ROD, LEVER, "E", "F", "G", (1.0 + 1.0j, 0.5 + 1.5j), 2.5),
+    _DyadNames("rod2", "lever2", "H", "J", "K", (1.2 + 0.5j, 0.7 + 1.1j), 4.5),
 )
 
 

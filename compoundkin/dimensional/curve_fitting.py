@@ -108,7 +108,7 @@ class CurveTarget(NamedTuple):
         return 4 if self.closed else 6
 
 
-class _Designs(NamedTuple):
+class _RefinedDesigns(NamedTuple):
     """Designs of one chain that are refined together to a target, perhaps mirrored.
 
     `x` are their numbers, of an open target the crank's angle at its begin and the turn from there, then the logarithm
@@ -121,7 +121,7 @@ class _Designs(NamedTuple):
     x: Number
     cost: Number
 
-    def refined(self, steps: int, early: bool = False) -> _Designs:
+    def refined(self, steps: int, early: bool = False) -> _RefinedDesigns:
         """Return them after so many steps; `early` ones are by the arc's length."""
         x = self.x.copy()
         r, j, clear = _residuals(self.chain, x, self.target, early)
@@ -143,7 +143,7 @@ class _Designs(NamedTuple):
             damping[to[gain < SETTLED]] *= SLOWER
         return self._replace(x=x, cost=cost)
 
-    def best(self, kept: Number) -> _Designs:
+    def best(self, kept: Number) -> _RefinedDesigns:
         """Return some of them."""
         return self._replace(x=self.x[kept], cost=self.cost[kept])
 
@@ -201,7 +201,7 @@ def fitted(matches: Sequence[AtlasMatch], curve: Number, closed: bool = True, li
     return sorted((one for part in found for one in _laid(part.refined(LAST))), key=lambda one: one.apart)
 
 
-def _refined(begun: Iterable[_Designs], early: int = EARLY) -> list[_Designs]:
+def _refined(begun: Iterable[_RefinedDesigns], early: int = EARLY) -> list[_RefinedDesigns]:
     """Return designs refined, the best of all and the best of each chain and sense to the end."""
     parts = [part.refined(EARLY, early=True) if early else part for part in begun]
     parts = [part.refined(FIRST_STEPS) for part in parts]
@@ -210,9 +210,9 @@ def _refined(begun: Iterable[_Designs], early: int = EARLY) -> list[_Designs]:
             for part in parts]  # fmt: skip
 
 
-def _best(parts: Sequence[_Designs]) -> list[_Designs]:
+def _best(parts: Sequence[_RefinedDesigns]) -> list[_RefinedDesigns]:
     """Return the best designs of each number of links, and of each chain its best, none twice."""
-    found = list[_Designs]()
+    found = list[_RefinedDesigns]()
     for links in sorted({part.chain.links for part in parts}):
         own = [part for part in parts if part.chain.links == links]
         least = np.sort(np.concatenate([part.cost for part in own]))[:KEPT][-1]
@@ -227,14 +227,14 @@ def _best(parts: Sequence[_Designs]) -> list[_Designs]:
     return found
 
 
-def _nearest(parts: Sequence[_Designs], count: int) -> Iterator[_Designs]:
+def _nearest(parts: Sequence[_RefinedDesigns], count: int) -> Iterator[_RefinedDesigns]:
     """Yield the best designs of all, one by one, not many of a chain."""
     order = sorted((part.cost[k], n, k) for n, part in enumerate(parts) for k in range(min(len(part.x), OF_A_CHAIN)))
     for _, n, k in order[:count]:
         yield parts[n].best(np.array([k]))
 
 
-def _moved(found: Sequence[_Designs], rng: np.random.Generator) -> Iterator[_Designs]:
+def _moved(found: Sequence[_RefinedDesigns], rng: np.random.Generator) -> Iterator[_RefinedDesigns]:
     """Yield the best designs, each moved to several places about."""
     for one in _nearest(found, MOVED):
         low, high = np.log(MOVED_BY)
@@ -245,7 +245,7 @@ def _moved(found: Sequence[_Designs], rng: np.random.Generator) -> Iterator[_Des
             yield one._replace(x=around[clear], cost=np.full(clear.sum(), np.inf))
 
 
-def _grown(found: Sequence[_Designs], links: int, rng: np.random.Generator) -> Iterator[_Designs]:
+def _grown(found: Sequence[_RefinedDesigns], links: int, rng: np.random.Generator) -> Iterator[_RefinedDesigns]:
     """Yield the best designs with a dyad more: of many dyads those that promise most by their first step."""
     for one in _nearest([part for part in found if part.chain.links < links], GROWN):
         promises = list[tuple[float, CurveChain, Number]]()
@@ -258,10 +258,10 @@ def _grown(found: Sequence[_Designs], links: int, rng: np.random.Generator) -> I
         for larger in dict.fromkeys(chain for _, chain, _ in taken):
             designs = np.array([design for _, chain, design in taken if chain is larger])
             x = np.hstack([designs, np.repeat(one.x[:, len(one.chain.numbers) :], len(designs), axis=0)])
-            yield _Designs(larger, one.mirrored, one.target, x, np.full(len(x), np.inf))
+            yield _RefinedDesigns(larger, one.mirrored, one.target, x, np.full(len(x), np.inf))
 
 
-def _promised(one: _Designs, larger: CurveChain, units: Number) -> tuple[Number, Number]:
+def _promised(one: _RefinedDesigns, larger: CurveChain, units: Number) -> tuple[Number, Number]:
     """Return by how much a first step of designs with a dyad more lowers the sum of squares, and those designs.
 
     Only P's two coordinates on the new rod are new to the curve, and by them it moves as the rod turns.
@@ -292,7 +292,7 @@ def _promised(one: _Designs, larger: CurveChain, units: Number) -> tuple[Number,
     return gains[clear], designs[clear]
 
 
-def _begun(matches: Sequence[AtlasMatch], target: CurveTarget) -> Iterator[_Designs]:
+def _begun(matches: Sequence[AtlasMatch], target: CurveTarget) -> Iterator[_RefinedDesigns]:
     """Yield matches by their chains, mirrored or not, as they are laid on the target."""
     for chain in dict.fromkeys(match.chain for match in matches):
         for mirrored in (False, True):
@@ -305,7 +305,7 @@ def _begun(matches: Sequence[AtlasMatch], target: CurveTarget) -> Iterator[_Desi
                 continue
             wanted = target.mirrored if mirrored else target
             x = [[*designs[k], *_unknowns(curves[k], wanted, own[k].part)] for k in np.flatnonzero(clear)]
-            yield _Designs(chain, mirrored, wanted, np.array(x), np.full(len(x), np.inf))
+            yield _RefinedDesigns(chain, mirrored, wanted, np.array(x), np.full(len(x), np.inf))
 
 
 def _unknowns(z: Number, target: CurveTarget, part: tuple[float, float] | None) -> list[float]:
@@ -314,7 +314,7 @@ def _unknowns(z: Number, target: CurveTarget, part: tuple[float, float] | None) 
     return [*window, float(np.log(abs(scale))), float(np.angle(scale)), place.real, place.imag]
 
 
-def _laid(part: _Designs) -> Iterator[FittedCurve]:
+def _laid(part: _RefinedDesigns) -> Iterator[FittedCurve]:
     """Yield refined designs in the units and at the place of the curve."""
     n, target = len(part.chain.numbers), part.target
     _, clear = part.chain.curves(part.x[:, :n], 4 * POSES)

@@ -170,7 +170,7 @@ class _NoPlace(Exception):
 
 
 @dataclass
-class _Section:
+class _LaidSection:
     """A heading with its lines: from the heading to the end of its last line that holds something."""
 
     way: Way
@@ -195,7 +195,7 @@ class _Layout:
 
     text: str
     sign: str
-    sections: list[_Section] = field(default_factory=list)
+    sections: list[_LaidSection] = field(default_factory=list)
     entries: dict[Way, tuple[int, int]] = field(default_factory=dict)
     values: dict[Way, tuple[int, int]] = field(default_factory=dict)
     own: dict[Way, Way] = field(default_factory=dict)  # of an entry in lines: the way of its section
@@ -208,7 +208,7 @@ class _Layout:
 
     def _note_lines(self) -> None:
         """Note the sections of TOML, and the entries in their lines."""
-        at, section, counts = 0, _Section((), 0, 0), dict[Way, int]()
+        at, section, counts = 0, _LaidSection((), 0, 0), dict[Way, int]()
         self.sections.append(section)
         while (at := self._skip(_BLANK, at)) < len(self.text):
             head = _HEAD.match(self.text, at)
@@ -218,7 +218,7 @@ class _Layout:
                 if len(head[0]) == 2:
                     counts[way] = counts.get(way, -1) + 1
                     way = (*way, counts[way])
-                section = _Section(way, self.line_start(at), self.line_end(stop))
+                section = _LaidSection(way, self.line_start(at), self.line_end(stop))
                 self.sections.append(section)
             else:
                 stop = self._entry(at, section.way, section.way)

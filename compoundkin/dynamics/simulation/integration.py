@@ -180,6 +180,7 @@ def _step(chart: Chart, solver: Any, course: SimulatedCourse) -> None:
             return
         except NotUniqueMotion:
             tried = min(solver.h_abs if solver.t == before["t"] else solver.t - before["t"], solver.max_step)
+            # SciPy's solvers have no way back from a step but their fields
             vars(solver).update(before)
             solver.h_abs = tried / SHORTER
             if solver.h_abs < STALLED * course.until:

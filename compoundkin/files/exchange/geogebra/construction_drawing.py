@@ -41,7 +41,7 @@ _ALONG = 241
 
 
 @dataclass(frozen=True)
-class _Choice:
+class _DrivenCourse:
     """What an input may drive: its course over the range, from where it is drawn first."""
 
     kind: str
@@ -79,7 +79,6 @@ def read_construction(content: Content, form: str) -> Imported:
     """
     read = construction_in(content)
     moving = MovingConstruction(read, content.where)
-    moving.understand()
     shown = _ConstructionDrawing(moving)
     drawing = replace(shown.drawing(), title=read.title or content.name)
     found = mechanism_of(drawing, form, content.where)
@@ -251,7 +250,7 @@ class _ConstructionDrawing:
 
     def _turned(
         self, over: Mapping[str, Number], rest: Mapping[str, Number], guides: Sequence[DrawnGuideway]
-    ) -> Iterator[_Choice]:
+    ) -> Iterator[_DrivenCourse]:
         """Yield the turns of links about pins: on the frame, on each other, on blocks."""
         for base in range(-1, len(self.bodies)):
             own = self.fixed if base < 0 else self.bodies[base].points
@@ -265,26 +264,26 @@ class _ConstructionDrawing:
                 if row is not None and others is not None and self._follows(row * self.size, others * self.size):
                     at, link = places[0]
                     kind = "turn" if link == FRAME else "turn on a link"
-                    yield _Choice(kind, _is_even(row), DrawnDriver(f"link {k}", link, at), row)
+                    yield _DrivenCourse(kind, _is_even(row), DrawnDriver(f"link {k}", link, at), row)
 
     def _slid(
         self, over: Mapping[str, Number], rest: Mapping[str, Number], guides: Sequence[DrawnGuideway]
-    ) -> Iterator[_Choice]:
+    ) -> Iterator[_DrivenCourse]:
         for guide in guides:
             if guide.on.startswith("barrel "):
                 continue
             row, others = (self._along_guide(guide, rows) for rows in (over, rest))
             if row is not None and others is not None and self._follows(row, others):
-                yield _Choice("slide", _is_even(row), DrawnDriver(guide.link, guide.on, guide.key), row)
+                yield _DrivenCourse("slide", _is_even(row), DrawnDriver(guide.link, guide.on, guide.key), row)
 
-    def _lengthened(self, over: Mapping[str, Number], rest: Mapping[str, Number]) -> Iterator[_Choice]:
+    def _lengthened(self, over: Mapping[str, Number], rest: Mapping[str, Number]) -> Iterator[_DrivenCourse]:
         """Yield distances between points, those that are made of each other first; link and on stand for the points."""
         near = [(a, b) for b in self.moving for a in self._moving.made_of(b)]
         for start, end in dict.fromkeys([*near, *combinations([*self.fixed, *self.moving], 2)]):
             if start in over and end in over and not {start, end} <= set(self.fixed):
                 row, others = (np.abs(rows[end] - rows[start]) for rows in (over, rest))
                 if self._follows(row, others):
-                    yield _Choice("way between", _is_even(row), DrawnDriver(start, end, ""), row)
+                    yield _DrivenCourse("way between", _is_even(row), DrawnDriver(start, end, ""), row)
 
     def _angle(self, k: int, base: int, rows: Mapping[str, Number]) -> Number | None:
         turned = self._direction(k, rows)

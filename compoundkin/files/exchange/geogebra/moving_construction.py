@@ -22,7 +22,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.geogebra.construction_commands import Straight
 from compoundkin.files.exchange.geogebra.read_construction import (
     AUTHOR,
-    Choices,
+    DrawnChoices,
     ConstructionValues,
     ReadConstruction,
 )
@@ -85,11 +85,14 @@ class TurnRatio:
 
 
 class MovingConstruction:
-    """A construction over many poses. `places` has its points over all of them, the drawn pose first."""
+    """A construction over many poses, with its links, slides and gears.
+
+    `places` has its points over all of them, the drawn pose first. Raises InvalidInput for what moves in another way.
+    """
 
     def __init__(self, read: ReadConstruction, where: str) -> None:
         self.read, self.where = read, where
-        self.choices = Choices()
+        self.choices = DrawnChoices()
         self.notes: list[str] = []
         self.drawn = ConstructionValues(read, self.choices, {})
         self.needs = _needs(read)
@@ -105,6 +108,7 @@ class MovingConstruction:
         self.guides: list[PointGuide] = []
         self.ratios: list[TurnRatio] = []
         self._known_parts: dict[str, set[str]] = {}
+        self._find_pairs()
 
     # --- what moves it ------------------------------------------------------------------------------------------------
 
@@ -231,7 +235,7 @@ class MovingConstruction:
 
     # --- links and pairs ----------------------------------------------------------------------------------------------
 
-    def understand(self) -> None:
+    def _find_pairs(self) -> None:
         """Find links, slides and gears. Raises InvalidInput for what moves in another way."""
         self._refuse_unread()
         self.fixed = [name for name, row in self.places.items() if self.stays(row)]

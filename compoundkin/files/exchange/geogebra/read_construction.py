@@ -174,7 +174,7 @@ def _numbered(attributes: Mapping[str, str]) -> list[str]:
 
 
 @dataclass
-class Choices:
+class DrawnChoices:
     """What the drawn pose tells once: which meeting points are meant, and where on their paths points are."""
 
     branch: dict[str, int] = field(default_factory=dict)
@@ -188,7 +188,7 @@ class ConstructionValues:
     the pose is the drawn one, which fills `choices`.
     """
 
-    def __init__(self, read: ReadConstruction, choices: Choices, given: Mapping[str, Number]) -> None:
+    def __init__(self, read: ReadConstruction, choices: DrawnChoices, given: Mapping[str, Number]) -> None:
         self._read, self._choices, self._given = read, choices, given
         self.size = len(next(iter(given.values()))) if given else 1
         axes = (Straight(self.whole(0j), self.whole(u)) for u in (1 + 0j, 1j))
