@@ -22,8 +22,8 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files.exchange.geogebra.construction_commands import Straight
 from compoundkin.files.exchange.geogebra.read_construction import (
     AUTHOR,
-    DrawnChoices,
     ConstructionValues,
+    DrawnChoices,
     ReadConstruction,
 )
 
