@@ -17,7 +17,8 @@ from compoundkin.base.arrays import TURN, Number
 from compoundkin.dimensional.candidates import Candidates, Linkage
 from compoundkin.dimensional.coupler_atlas import AtlasMatch, best_laid, coupler_atlas, mean_distance, resampled
 from compoundkin.dimensional.curve_chains import CurveChain, Laying, turn
-from compoundkin.dimensional.tasks import CurveTask
+from compoundkin.dimensional.defects import SolvedLinkage, judged
+from compoundkin.dimensional.tasks import Conditions, CurveTask
 
 # Designs of the atlas, how many of them are refined, how many answers are given beside so many of each number of links,
 # and how many of one kind of linkage while others are there.
@@ -155,25 +156,37 @@ def traced(task: CurveTask) -> Candidates:
     each number of links the best.
     """
     atlas = coupler_atlas(min(task.links, 6), DESIGNS)
-    found = fitted(atlas.near(task.points, STARTED, closed=task.closed), task.points, task.closed, task.links)
+    wanted = task.conditions
+    limits = {"region": wanted.region, "transmission": wanted.transmission}
+    matches = atlas.near(task.points, STARTED, closed=task.closed, **limits)
+    if not matches:  # what comes near without them is told, with what it misses
+        matches = atlas.near(task.points, STARTED, closed=task.closed)
+    found = fitted(matches, task.points, task.closed, task.links)
     different = list[Linkage]()
     # of each number of links, though fewer are seldom the nearest
     for links in sorted({one.chain.links for one in found}):
         different += _different([one for one in found if one.chain.links == links], SIMPLE, different)
-    different += _different(found, GIVEN, different)
+    different += _different(found, GIVEN, different, wanted)
     complete = f"the best {len(different)} of {len(atlas)} designs of {len(atlas.chains)} chains, refined"
     if task.links > 6:
         complete += " and grown"
     return Candidates(different, complete, is_family=True)
 
 
-def _different(found: Sequence[FittedCurve], count: int, others: Sequence[Linkage]) -> list[Linkage]:
-    """Return so many of the best as linkages, none like another or like others, few of one kind before all kinds."""
+def _different(
+    found: Sequence[FittedCurve], count: int, others: Sequence[Linkage], wanted: Conditions | None = None
+) -> list[Linkage]:
+    """Return so many of the best as linkages, none like another or like others, few of one kind before all kinds.
+
+    Where conditions are given, they fulfil them.
+    """
     different, rest = list[Linkage](), list[Linkage]()
     for made in (one.linkage for one in found):
         if len(different) == count:
             break
-        if all(_unlike(made, other) for other in (*others, *different, *rest)):
+        if any(not _unlike(made, other) for other in (*others, *different, *rest)):
+            continue
+        if wanted is None or isinstance(judged(made, wanted, np.inf), SolvedLinkage):
             kinds = [other.title for other in (*others, *different)]
             (different if kinds.count(made.title) < OF_A_KIND else rest).append(made)
     return different + rest[: count - len(different)]

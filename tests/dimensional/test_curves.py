@@ -294,6 +294,16 @@ def test_conditions_hold_for_curves_too() -> None:
     assert "transmission" in answer.reasons
 
 
+def test_a_region_is_kept_by_what_is_searched() -> None:
+    """Answers lie within it, not only what is left of answers anywhere: the nearest of all have pivots outside."""
+    anywhere = ck.synthesise(ck.tasks.curve(EGG, links=4))
+    outside = [pivot for one in anywhere for pivot in one.candidate.pivots if pivot.imag < 3]
+    assert outside
+    answer = ck.synthesise(ck.tasks.curve(EGG, links=4), region=[(-20, 3), (30, 40)])
+    assert len(answer) >= 1
+    assert all(pivot.imag >= 3 for one in answer for pivot in one.candidate.pivots)
+
+
 @pytest.mark.parametrize(
     ("points", "options", "words"),
     [
