@@ -33,6 +33,7 @@ from compoundkin.dimensional.curve_chains import CRANK, ChainPlan, CurveChain, L
 from compoundkin.dimensional.defects import least_transmission
 from compoundkin.dimensional.tasks import Conditions
 from compoundkin.files.atomic import new_folder
+from compoundkin.files.parsed_document import unreadable
 from compoundkin.kinematics import solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.samples.random_samples import SobolSample
@@ -282,7 +283,8 @@ def coupler_atlas(
     """Return an atlas of so many designs whose driver turns fully, of chains of at most so many links: 4, 6 or 8.
 
     It is the same whenever it is made. A `folder` keeps it, a Parquet file for each chain: it is made there once, and
-    opened from then on, not loaded. Raises InvalidInput for other numbers of links, and for a folder of anything else.
+    opened from then on, not loaded. Raises InvalidInput for other numbers of links, a negative seed, and a folder of
+    anything else.
 
     >>> len(coupler_atlas(4, 1000))
     1000
@@ -292,21 +294,24 @@ def coupler_atlas(
     chains = curve_chains(links)
     if count < len(chains):
         raise InvalidInput(Problem("count", f"{count} designs are too few", f"take one of each chain: {len(chains)}"))
+    if seed < 0:
+        raise InvalidInput(Problem("seed", f"{seed} is no seed", "give a whole number from 0 on"))
     if folder is None:
         return _atlas(links, count, seed)
     where = Path(folder)
     definition = json.dumps({"format": 1, "links": links, "count": count, "seed": seed}) + "\n"
     fingerprint = hashlib.sha256(definition.encode()).hexdigest()[:16]
-    if not (where / _DEFINITION).exists():
+    kept = _definition_in(where)
+    if kept is None:
         with new_folder(where) as fresh:
             for k, (chain, designs, descriptors) in enumerate(_all_made(links, count, seed)):
                 columns = {one.name: designs[:, n] for n, one in enumerate(chain.numbers)}
                 columns[_DESCRIPTOR] = descriptors.view(np.float32)
                 (fresh / _file(k)).write_bytes(part_content(_columns(chain), columns, fingerprint))
             (fresh / _DEFINITION).write_text(definition, encoding="utf-8")
-    if (where / _DEFINITION).read_text(encoding="utf-8") != definition:
+    elif kept != definition:
         raise InvalidInput(
-            Problem(str(folder), "it holds another atlas", f"it is {definition.strip()}: name a new one")
+            Problem(str(folder), "it holds another atlas", f"it is {kept.strip()[:200]}: name a new one")
         )
     shares = _shares(chains, count)
     return CouplerAtlas(tuple(AtlasPart(chain, share, None, where / _file(k), fingerprint)
@@ -315,6 +320,16 @@ def coupler_atlas(
 
 # The file that says what an atlas in a folder is, and the column of descriptors.
 _DEFINITION, _DESCRIPTOR = "atlas.json", "descriptor"
+
+
+def _definition_in(folder: Path) -> str | None:
+    """Return what the atlas in a folder is, None where there is none. Raises InvalidInput where it cannot be read."""
+    try:
+        return (folder / _DEFINITION).read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError) as error:
+        raise unreadable(folder, f"it cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
 def _file(k: int) -> str:

@@ -71,7 +71,7 @@ class FreeDimension:
 
     @property
     def number(self) -> str:
-        """The name of a pair's number, as `numbers_of` has it."""
+        """The name of a pair's number: its word, with its part where it has several."""
         return f"{self.word}.{self.part}" if self.part else self.word
 
     @property
