@@ -8,6 +8,7 @@ import math
 import os
 from collections.abc import Callable, Iterator
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -418,7 +419,11 @@ def test_every_public_function_is_tried() -> None:
 @pytest.mark.full
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("name", sorted(calls()))
-def test_wrong_objects_are_refused_by_errors_of_the_package(name: str) -> None:
+def test_wrong_objects_are_refused_by_errors_of_the_package(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # some of them are names of files, which are then written
+    monkeypatch.chdir(tmp_path)
     offenders = []
     for key, wrong, call in tried(name):
         try:
