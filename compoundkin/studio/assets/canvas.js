@@ -1,6 +1,9 @@
 // The drawing as SVG: made anew when the structure changes, only moved while it moves. Also what lies under a pointer.
 const SVG = "http://www.w3.org/2000/svg";
-const NEAR_PIN = 12, NEAR_BAR = 9, MARGIN = 70, LETTER = 13;
+const NEAR_PIN = 12, NEAR_BAR = 9, MARGIN = 70;
+// Directions in which a letter may stand about its point, the usual first, and how far from it; it leaves one when a
+// bar comes nearer than HELD, in radians, and takes the first in which none is nearer than FREE.
+const SIDES = [-1, -3, 0, 4, -2, 1, 3, 2].map((k) => (k * Math.PI) / 4), LETTER = 19, HELD = 0.4, FREE = 0.7;
 // What is snapped to is so near, in pixels; two of them where they cross, so near.
 const NEAR = 6, NEAR_CROSSING = 10;
 const AWAY = 28, GUIDE = 70;
@@ -61,6 +64,8 @@ export class Canvas {
     this.picked = new Set();
     this.toggled = new Set();
     this.locks = [];
+    // where each letter stands: an index into SIDES
+    this.sides = new Map();
     this.photo = null;
     this.layers = ["below", "traces", "guides", "shapes", "links", "marks", "pins", "letters", "above"];
     for (const name of this.layers) this[name] = made("g", { class: `layer-${name}` }, svg);
@@ -310,12 +315,36 @@ export class Canvas {
       if (!at) continue;
       const state = `${this.picked.has(letter) ? " picked" : ""}${this.over?.point === letter ? " over" : ""}${this.chosen?.point === letter ? " chosen" : ""}`;
       made("circle", { cx: at[0], cy: at[1], r: pins[letter] ? 5.5 : 4, class: `pin${pins[letter] ? "" : " end"}${state}`, "data-point": letter }, this.pins);
-      made("text", { x: at[0] + LETTER, y: at[1] - LETTER + 3 }, this.letters).textContent = letter;
+      const side = this.#side(letter, at), x = at[0] + LETTER * Math.cos(side), y = at[1] + LETTER * Math.sin(side) + 5;
+      made("text", { x, y, "text-anchor": "middle" }, this.letters).textContent = letter;
     }
     this.#locks();
     const { drawn, turned } = this;
     if (drawn) made("rect", { x: drawn.at[0] - 6, y: drawn.at[1] - 6, width: 12, height: 12, class: "grip" }, this.letters);
     if (turned) made("circle", { cx: turned.at[0], cy: turned.at[1], r: 7, class: "grip" }, this.letters);
+  }
+
+  // the direction from a point to its letter: no bar and no ground is drawn there while there is another
+  #side(letter, at) {
+    const ways = [];
+    for (const { name, points } of this.structure.links) {
+      if (!points.includes(letter)) continue;
+      if (name === "frame") ways.push(Math.PI / 2);
+      else for (const one of points) if (one !== letter && this.at(one)) ways.push(Math.atan2(this.at(one)[1] - at[1], this.at(one)[0] - at[0]));
+    }
+    for (const { guide, points, links: [on], is_cylinder: is } of this.structure.pairs) {
+      if (!guide || is || points[0] !== letter) continue;
+      const along = -(this.angle(on) + guide[2]);
+      ways.push(along, along + Math.PI);
+    }
+    const room = (k) => Math.min(...ways.map((way) => Math.abs(Math.atan2(Math.sin(way - SIDES[k]), Math.cos(way - SIDES[k])))), Math.PI);
+    let side = this.sides.get(letter) ?? 0;
+    if (room(side) < HELD) {
+      const rooms = SIDES.map((_, k) => room(k)), free = rooms.findIndex((one) => one >= FREE);
+      side = free < 0 ? rooms.indexOf(Math.max(...rooms)) : free;
+    }
+    this.sides.set(letter, side);
+    return SIDES[side];
   }
 
   #photograph() {

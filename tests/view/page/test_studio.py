@@ -243,9 +243,33 @@ def six_bar(seen: Window) -> None:
     seen.press(px["E"], "d")
 
 
+# The least distance from the middle of a letter to a bar through its point, over all poses, in pixels.
+BARS_FROM_LETTERS = """(() => {
+  const { canvas } = studio, { links } = canvas.structure, count = canvas.motion.points.G[0].length;
+  let least = Infinity;
+  for (let pose = 0; pose < count; pose += 5) {
+    canvas.pose = pose;
+    canvas.draw();
+    for (const text of canvas.letters.querySelectorAll("text")) {
+      const letter = text.textContent, box = text.getBBox(), a = canvas.at(letter);
+      const p = [box.x + box.width / 2 - a[0], box.y + box.height / 2 - a[1]];
+      for (const { points } of links.filter((one) => one.name !== "frame" && one.points.includes(letter))) {
+        for (const other of points.filter((one) => one !== letter)) {
+          const b = canvas.at(other), u = [b[0] - a[0], b[1] - a[1]], long = u[0] ** 2 + u[1] ** 2;
+          const t = Math.max(0, Math.min(1, (p[0] * u[0] + p[1] * u[1]) / long));
+          least = Math.min(least, Math.hypot(p[0] - t * u[0], p[1] - t * u[1]));
+        }
+      }
+    }
+  }
+  return least;
+})()"""
+
+
 def test_the_six_bar_of_the_textbook_is_drawn(window: Any) -> None:
     seen = window()
     six_bar(seen)
+    assert seen.value(BARS_FROM_LETTERS) > 6
     by_hand = ck.Mechanism(
         "By hand",
         ck.link("frame", "E", "B", "F"),
