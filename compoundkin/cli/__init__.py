@@ -57,9 +57,7 @@ VERBS = {
 
 # Verbs that are not `command` of the file of their name, as `import` is a word of Python.
 _COMMANDS = {
-    "centres": ("structure", "centres_command"),
-    "characteristics": ("structure", "characteristics_command"),
-    "optimise": ("study", "optimise_command"),
+    "centres": ("characteristics", "centres_command"),
     "configurations": ("circuits", "configurations_command"),
     "workspace": ("circuits", "workspace_command"),
     "completion": ("new", "completion_command"),

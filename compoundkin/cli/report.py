@@ -138,7 +138,7 @@ def report_exit_code(report: Report, assembled: bool) -> int:
 
 def _of_centres(structure: Structure, at: Sequence[str], design: int, options: Mapping[str, Any]) -> Report:
     """Return the instant centres at a pose, with the rates and modes of the motion."""
-    from compoundkin.cli.structure import solve_pose
+    from compoundkin.cli.characteristics import solve_pose
     from compoundkin.view.report.motion_report import centres_report
 
     rates = {key: options[key] for key in ("speeds", "modes")}

@@ -1,4 +1,4 @@
-"""The ways of solving an Assur group, and this registry, of which the first that fits is taken."""
+"""The ways of solving an Assur group: one file each, and this registry, of which the first that fits is taken."""
 
 from __future__ import annotations
 
@@ -9,8 +9,11 @@ from compoundkin.kinematics.groups.dyad import DyadSolver
 from compoundkin.kinematics.groups.follower import FollowerSolver
 from compoundkin.kinematics.groups.gear_train import GearTrainSolver
 from compoundkin.kinematics.groups.general import GeneralSolver
-from compoundkin.kinematics.groups.pinned_dyads import RPP, RPR, RRP, RRR
 from compoundkin.kinematics.groups.prp import PRP
+from compoundkin.kinematics.groups.rpp import RPP
+from compoundkin.kinematics.groups.rpr import RPR
+from compoundkin.kinematics.groups.rrp import RRP
+from compoundkin.kinematics.groups.rrr import RRR
 from compoundkin.model.pairs.contract import Ends
 from compoundkin.structure.mobility_count import Group
 

@@ -14,8 +14,11 @@ from compoundkin.base.errors import InvalidInput, InvalidMechanism, NotAssembled
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Series, as_series, constant
 from compoundkin.kinematics.groups.dyad import COINCIDENT, DyadSolver, OuterPair
-from compoundkin.kinematics.groups.pinned_dyads import RPP, RPR, RRP, RRR
 from compoundkin.kinematics.groups.prp import PRP
+from compoundkin.kinematics.groups.rpp import RPP
+from compoundkin.kinematics.groups.rpr import RPR
+from compoundkin.kinematics.groups.rrp import RRP
+from compoundkin.kinematics.groups.rrr import RRR
 from compoundkin.kinematics.motion import PointMotion
 from compoundkin.model.geometry import vector
 
