@@ -814,42 +814,45 @@ def _without(basis: Number, idle: Number) -> Number:
     return np.asarray(basis @ right[int(np.sum(values > 0.5)) :].T)
 
 
+class _Opening(NamedTuple):
+    """A singular pose: the drivers' values there, and what can move, in columns of unit vectors.
+
+    `null` moves with the drivers on their path, and `left` are the forces that belong to it; `opened` moves though the
+    drivers rest; `idle` are turns of links that move nothing else. `counts` tells in how many ways each group opens.
+    """
+
+    pose: _Pose
+    values: dict[str, float]
+    null: Number
+    left: Number
+    opened: Number
+    idle: Number
+    counts: tuple[int, ...]
+
+
+class _Branches(NamedTuple):
+    """What a pose is at which something opens, by the tangents of the branches through it with their multiplicities."""
+
+    kind: str
+    tangents: list[tuple[Number, int]]
+    finite: bool = True
+    turns: bool = False
+
+
 def _examined(system: _Equations, design: int, spot: _Spot) -> Singularity | None:
     """Return what a pose is at which some block is singular. None where others hold it."""
     middle = 0.5 * (spot.place + spot.until)
-    pose = _pose_at(system, design, middle)
-    if not np.isfinite(pose.whole).all():
+    opening = _opening(system, design, middle, spot.is_end)
+    if opening is None:
         return None
-    kind, turns, finite, values = CHANGE, False, True, _drivers_at(system.motion, design, middle)
-    idle = _idle(pose)
-    null, left = _spaces(pose.with_free_driver(pose.whole))
-    null = _without(null, idle)
-    opened = _without(_spaces(pose.whole)[0], idle)
-    if null.shape[1] == 1 and (opened.shape[1] or spot.is_end):
-        pose, values = _at_limit(pose, idle, values)
-        opened = _without(_spaces(pose.whole)[0], idle)
-    which = [_nullity(system, pose, block) for block in system.blocks]
-    # no more than in the blocks: links far away have levers that make whole singular values small
-    opened = opened[:, max(opened.shape[1] - sum(which), 0) :]
-    if not opened.shape[1]:
-        return None
-    if null.shape[1] == 1:
-        tangent = _without(_spaces(pose.with_free_driver(pose.whole))[0], idle)[:, 0]
-        kind, turns, tangents = LIMIT, abs(_turning(pose, tangent)) > FLAT, [(tangent, 1)]
-    else:
-        forms = _forms(pose, null, left)
-        roots, finite = zeros_of_forms(forms)
-        tangents = [(null @ root, times) for root, times in roots if _leads_on(pose, null @ root)]
-        kind = CHANGE if sum(times for _, times in tangents) > 1 or not finite else SHAKY
-        if spot.is_end and not tangents and opened.shape[1] == 1:
-            # what seems to open besides is next to a pole of another group
-            kind, turns, tangents = LIMIT, True, [(opened[:, 0], 1)]
+    found = _branches(opening, spot.is_end)
+    motion, pose, kind, values = system.motion, opening.pose, found.kind, opening.values
     if spot.until > spot.place:
-        values = _drivers_at(system.motion, design, spot.place)
+        values = _drivers_at(motion, design, spot.place)
         # else the drivers rest at a singular pose
-        kind = kind if values == _drivers_at(system.motion, design, spot.until) else ARCHITECTURE
-    ways = _ways_of_motion(pose, design, middle)
-    for way in ways if not finite else ():
+        kind = kind if values == _drivers_at(motion, design, spot.until) else ARCHITECTURE
+    ways, tangents = _ways_of_motion(pose, design, middle), list(found.tangents)
+    for way in ways if not found.finite else ():
         if not any(_alike(way, other) for other, _ in tangents):
             tangents.append((way, 1))
     # at a limit position the motion turns into the only branch by the root of the distance
@@ -858,14 +861,47 @@ def _examined(system: _Equations, design: int, spot: _Spot) -> Singularity | Non
         for t, times in tangents
     ]
     branches.sort(key=lambda one: not one.followed)
-    motion = system.motion
-    groups = [group for group, count in zip(motion.structure.groups, which, strict=True) if count]
+    groups = [group for group, count in zip(motion.structure.groups, opening.counts, strict=True) if count]
     return Singularity(
         0, kind, _design(motion, design), spot.place, spot.until, values, _time(motion, design, spot.place),
         tuple(group.name for group in groups), tuple(link for group in groups for link in group.links), "",
-        tuple(_tangent(pose, opened[:, k], number=k + 1) for k in range(opened.shape[1])),
-        tuple(replace(one, number=k) for k, one in enumerate(branches, start=1)), finite, turns, pose.poses, motion,
+        tuple(_tangent(pose, one, number=k) for k, one in enumerate(opening.opened.T, start=1)),
+        tuple(replace(one, number=k) for k, one in enumerate(branches, start=1)),
+        found.finite, found.turns, pose.poses, motion,
     )  # fmt: skip
+
+
+def _opening(system: _Equations, design: int, place: float, is_end: bool) -> _Opening | None:
+    """Return what opens at a place, polished where it is a limit position. None where nothing does."""
+    pose = _pose_at(system, design, place)
+    if not np.isfinite(pose.whole).all():
+        return None
+    idle, values = _idle(pose), _drivers_at(system.motion, design, place)
+    null, left = _spaces(pose.with_free_driver(pose.whole))
+    null = _without(null, idle)
+    opened = _without(_spaces(pose.whole)[0], idle)
+    if null.shape[1] == 1 and (opened.shape[1] or is_end):
+        pose, values = _at_limit(pose, idle, values)
+        opened = _without(_spaces(pose.whole)[0], idle)
+    counts = tuple(_nullity(system, pose, block) for block in system.blocks)
+    # no more than in the blocks: links far away have levers that make whole singular values small
+    opened = opened[:, max(opened.shape[1] - sum(counts), 0) :]
+    return _Opening(pose, values, null, left, opened, idle, counts) if opened.shape[1] else None
+
+
+def _branches(here: _Opening, is_end: bool) -> _Branches:
+    """Return which branches meet where something opens: one smooth one, or the real zeros of quadratic forms."""
+    pose, null = here.pose, here.null
+    if null.shape[1] == 1:
+        tangent = _without(_spaces(pose.with_free_driver(pose.whole))[0], here.idle)[:, 0]
+        return _Branches(LIMIT, [(tangent, 1)], turns=abs(_turning(pose, tangent)) > FLAT)
+    roots, finite = zeros_of_forms(_forms(pose, null, here.left))
+    tangents = [(null @ root, times) for root, times in roots if _leads_on(pose, null @ root)]
+    if is_end and not tangents and here.opened.shape[1] == 1:
+        # what seems to open besides is next to a pole of another group
+        return _Branches(LIMIT, [(here.opened[:, 0], 1)], finite, turns=True)
+    kind = CHANGE if sum(times for _, times in tangents) > 1 or not finite else SHAKY
+    return _Branches(kind, tangents, finite)
 
 
 def _nullity(system: _Equations, pose: _Pose, block: _Block) -> int:

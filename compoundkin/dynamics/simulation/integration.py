@@ -253,53 +253,73 @@ def _passed(course: SimulatedCourse, by_ends: Callable[[Number], Number]) -> _In
     step = course.steps[-1]
     watched, times = (*course.watched, *stop_watches(step.chart)), (step.first, step.last)
     for one in first_passed(watched, step.chart, times, step.between, by_ends) if watched else ():
-        n, watch = len(step.chart.free), one.watch
-        if isinstance(watch, BreakWatch):
-            return _up_to_break(one, watch, step, course)
-        if isinstance(watch, ContactWatch):
-            course.cut(one.time, False)
-            damped = course.damped(watch.contact, True) if isinstance(watch, StopWatch) else 0.0
-            met = watch.passage(step.chart, one.time, one.state, course.fastest)
-            course.fastest = max(course.fastest, met.approach)
-            course.events.append(replace(met.event, lost=met.event.lost + damped))
-            return _Interruption(one.time, None if met.event.stops else met.state, met.released, met.landing)
-        if watch.name == REST and not watch.asked:
-            course.cut(one.time)
-            return _Interruption(one.time, np.array([*one.state[:n], *np.zeros(n), one.state[-1]]))
-        if watch.name == REVERSES and not watch.asked:
-            course.cut(one.time)
-            return _Interruption(one.time, one.state, is_smooth=True)
-        here = SimulatedState(step.chart.state(one.time, one.state[:n], one.state[n : 2 * n]), step.chart.order)
-        is_end = watch.name == END and not watch.asked
-        text = f"{ended_pair(here).name} comes to an end of its guide" if is_end else watch.text
-        why, remedy = "", "start elsewhere, or with other loads"
-        if isinstance(watch, LiftOffWatch):
-            why = watch.reason([step.state(time) for time in (step.first, step.last)])
-            remedy = f'press it by a spring or by gravity, or let it lift off: release("{watch.pair}")'
-        if watch.falls and one.time <= 0.0:
-            raise InvalidInput(Problem("start", f"{text} at once{why}", remedy))
-        text += why
-        rebounds = is_end and course.restitution is not None
-        impact = after_impact(here, course.restitution or 0.0, course.fastest) if rebounds else None
-        stops = watch.stops and impact is None
-        lost = (0.0, "") if impact is None else (impact.lost, ended_pair(here).name)
-        course.events.append(SimulationEvent(one.time, watch.name, text, stops, *lost))
-        if stops or impact is not None:
-            course.cut(one.time)
-        if stops:
-            return _Interruption(one.time, None)
-        if impact is not None:
-            course.fastest = max(course.fastest, impact.approach)
-            speeds = impact.speeds[:n]
-            return _Interruption(one.time, np.array([*one.state[:n], *speeds, one.state[-1] - impact.lost]))
+        found = _met(one, step, course)
+        if found is not None:
+            return found
     if course.near is not None:
         watch, course.near = course.near, None
         beyond = step.last + BEYOND * (step.last - step.first)
-        found = watch.passed(step.chart, (step.last, beyond), step.between) if beyond < course.until else None
-        if found is not None:
-            state = step.between(np.array(found.time))
-            return _behind_place(Passed(watch, found.time, state, found.at), step, course)
+        found_there = watch.passed(step.chart, (step.last, beyond), step.between) if beyond < course.until else None
+        if found_there is not None:
+            state = step.between(np.array(found_there.time))
+            return _behind_place(Passed(watch, found_there.time, state, found_there.at), step, course)
     return None
+
+
+def _met(one: Passed, step: Step, course: SimulatedCourse) -> _Interruption | None:
+    """Record what a step passed; return how it interrupts the course. None where the course goes on."""
+    n, watch = len(step.chart.free), one.watch
+    if isinstance(watch, BreakWatch):
+        return _up_to_break(one, watch, step, course)
+    if isinstance(watch, ContactWatch):
+        return _at_contact(one, watch, step, course)
+    if watch.name == REST and not watch.asked:
+        course.cut(one.time)
+        return _Interruption(one.time, np.array([*one.state[:n], *np.zeros(n), one.state[-1]]))
+    if watch.name == REVERSES and not watch.asked:
+        course.cut(one.time)
+        return _Interruption(one.time, one.state, is_smooth=True)
+    return _at_event(one, step, course)
+
+
+def _at_contact(one: Passed, watch: ContactWatch, step: Step, course: SimulatedCourse) -> _Interruption:
+    """Record that a contact closes or opens; return the state behind it."""
+    course.cut(one.time, False)
+    damped = course.damped(watch.contact, True) if isinstance(watch, StopWatch) else 0.0
+    met = watch.passage(step.chart, one.time, one.state, course.fastest)
+    course.fastest = max(course.fastest, met.approach)
+    course.events.append(replace(met.event, lost=met.event.lost + damped))
+    return _Interruption(one.time, None if met.event.stops else met.state, met.released, met.landing)
+
+
+def _at_event(one: Passed, step: Step, course: SimulatedCourse) -> _Interruption | None:
+    """Record an event that is asked for or ends the motion; where a guide ends, links may rebound.
+
+    Raises InvalidInput for what is lost at the start already.
+    """
+    n, watch = len(step.chart.free), one.watch
+    here = SimulatedState(step.chart.state(one.time, one.state[:n], one.state[n : 2 * n]), step.chart.order)
+    is_end = watch.name == END and not watch.asked
+    text = f"{ended_pair(here).name} comes to an end of its guide" if is_end else watch.text
+    why, remedy = "", "start elsewhere, or with other loads"
+    if isinstance(watch, LiftOffWatch):
+        why = watch.reason([step.state(time) for time in (step.first, step.last)])
+        remedy = f'press it by a spring or by gravity, or let it lift off: release("{watch.pair}")'
+    if watch.falls and one.time <= 0.0:
+        raise InvalidInput(Problem("start", f"{text} at once{why}", remedy))
+    rebounds = is_end and course.restitution is not None
+    impact = after_impact(here, course.restitution or 0.0, course.fastest) if rebounds else None
+    stops = watch.stops and impact is None
+    lost = (0.0, "") if impact is None else (impact.lost, ended_pair(here).name)
+    course.events.append(SimulationEvent(one.time, watch.name, text + why, stops, *lost))
+    if stops:
+        course.cut(one.time)
+        return _Interruption(one.time, None)
+    if impact is None:
+        return None
+    course.cut(one.time)
+    course.fastest = max(course.fastest, impact.approach)
+    return _Interruption(one.time, np.array([*one.state[:n], *impact.speeds[:n], one.state[-1] - impact.lost]))
 
 
 # A step that is made again up to a break of a load ends before it by this part of its length, so that nothing behind
