@@ -23,9 +23,10 @@ from compoundkin.dynamics.loaded_block import loaded_blocks
 from compoundkin.dynamics.simulation.coordinate_change import Chart, chart_of, integrable
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import rotors_that_lose
-from compoundkin.dynamics.simulation.integration import PARTS, ChartStretch, SimulatedCourse, Step, integrate
+from compoundkin.dynamics.simulation.integration import PARTS, integrate
 from compoundkin.dynamics.simulation.load_breaks import breaks_in_time
 from compoundkin.dynamics.simulation.phases import SimulationPhase
+from compoundkin.dynamics.simulation.simulated_course import ChartStretch, SimulatedCourse, Step
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy, joined_energy, simulated_energy
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.dynamics.simulation.simulation_events import begin_at_stops, idle_latches, watches

@@ -14,8 +14,8 @@ from compoundkin.base.display import DisplaysHtml, DisplaysText, count_phrase
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
-from compoundkin.dynamics.simulation.integration import SimulatedCourse
 from compoundkin.dynamics.simulation.phases import SimulationPhase
+from compoundkin.dynamics.simulation.simulated_course import SimulatedCourse
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy
 from compoundkin.dynamics.simulation.simulation_events import SimulationEvent
 from compoundkin.kinematics.motion import Motion

@@ -51,6 +51,8 @@ CATCHES, OPENS, TOOTH, IDLE = "catches", "opens", "tooth", "idle"
 LANDS, REBOUNDS = "lands", "rebounds"
 # The name of the event where a load jumps.
 JUMP = "jump"
+# The name of the event where friction or a load holds a mechanism.
+STICKS = "sticks"
 Function = Callable[[SimulatedState], Any]
 
 
