@@ -14,7 +14,7 @@ from compoundkin.analysis.checks import Check, Finding
 from compoundkin.analysis.comparison import MechanismComparison
 from compoundkin.analysis.equations.loop_equations import LoopEquations
 from compoundkin.analysis.interference import Interference
-from compoundkin.analysis.singularities import Singularities, Singularity
+from compoundkin.analysis.singularity import Singularities, Singularity
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.configurations.workspace import Workspace
 from compoundkin.dimensional.cognates import Cognates

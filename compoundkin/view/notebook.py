@@ -12,7 +12,7 @@ from compoundkin.analysis.centres import Centres
 from compoundkin.analysis.checks import Check
 from compoundkin.analysis.comparison import MechanismComparison
 from compoundkin.analysis.interference import Interference
-from compoundkin.analysis.singularities import Singularities
+from compoundkin.analysis.singularity import Singularities
 from compoundkin.base.arrays import degrees
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.configurations.circuit_search import Circuits

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 import compoundkin as ck
-from compoundkin.analysis.singularities import Singularities, Singularity, singular_poses
+from compoundkin.analysis.singularities import singular_poses
+from compoundkin.analysis.singularity import Singularities, Singularity
 from compoundkin.base.linear import zeros_of_forms
 from compoundkin.kinematics.extremes.dead_points import driver_dead_points
 

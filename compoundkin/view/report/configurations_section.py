@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import prod
 
-from compoundkin.analysis.singularities import Singularities
+from compoundkin.analysis.singularity import Singularities
 from compoundkin.base.arrays import degrees, first_entry
 from compoundkin.base.errors import CompoundkinError, InvalidInput
 from compoundkin.configurations.circuit import Branch, Circuit, CircuitPlace, Limit

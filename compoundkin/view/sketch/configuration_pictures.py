@@ -50,7 +50,7 @@ from compoundkin.view.sketch.sketch_style import LETTER, LINE, SMALL
 from compoundkin.view.sketch.vectors import VectorScale, vector_shapes
 
 if TYPE_CHECKING:
-    from compoundkin.analysis.singularities import Singularity
+    from compoundkin.analysis.singularity import Singularity
     from compoundkin.configurations.circuit import Circuit
 
 # More panels than this are not compared.
@@ -145,7 +145,8 @@ def singularities_picture(what: Drawable | Singularity, options: PictureOptions)
 
     Dead points of outputs are drawn where one is given alone. Raises InvalidInput where no pose is singular.
     """
-    from compoundkin.analysis.singularities import Singularity, singular_poses
+    from compoundkin.analysis.singularities import singular_poses
+    from compoundkin.analysis.singularity import Singularity
 
     if isinstance(what, Singularity):
         found: Sequence[Singularity] = [what]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from compoundkin.analysis.singularities import Singularity
+from compoundkin.analysis.singularity import Singularity
 from compoundkin.base import display
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
