@@ -27,8 +27,8 @@ from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends, constraint_scales
 from compoundkin.structure.redundancy.constraint_equations import ConstraintEquations
 
-# Singular values of the whole Jacobian below this are zero: a singular pose is known to 1e-6, which the Jacobian's slope
-# by the pose makes a few times larger.
+# Singular values of the whole Jacobian below this are zero: a singular pose is known to 1e-6, of which the Jacobian's
+# slope by the pose makes a few times as much.
 ZERO = 1e-5
 # Links farther away than so many sizes are on their way to infinity, as between guides that become parallel: the least
 # singular value falls there, though nothing is singular.
