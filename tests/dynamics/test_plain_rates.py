@@ -10,7 +10,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.dynamics.reactions import undetermined
 from compoundkin.dynamics.reactions.undetermined import pressing_force
-from compoundkin.dynamics.simulation import simulation_events, tabulated_chart
+from compoundkin.dynamics.simulation import drive_table, simulation_events, tabulated_chart
 from compoundkin.dynamics.simulation.coordinate_change import by_links, chart_of
 from compoundkin.dynamics.simulation.dormand_prince import PlainSolver
 from compoundkin.dynamics.simulation.friction_table import tabulated_pressing
@@ -116,11 +116,11 @@ def test_tables_hold_in_the_dwells_of_cams(name: str) -> None:
 
 def test_a_way_of_many_sizes_takes_few_tables(monkeypatch: pytest.MonkeyPatch) -> None:
     """A letter for each link has no size: two metres in millimetres took 2,001 tables, one for each."""
-    made, drive_table = [], tabulated_chart.drive_table
+    made, table_of = [], tabulated_chart.drive_table
 
     def counted(*given: Any) -> Any:
         made.append(given)
-        return drive_table(*given)
+        return table_of(*given)
 
     monkeypatch.setattr(tabulated_chart, "drive_table", counted)
     block = ck.Mechanism(
@@ -137,13 +137,13 @@ def test_a_way_of_many_sizes_takes_few_tables(monkeypatch: pytest.MonkeyPatch) -
 
 def test_nothing_is_halved_where_nothing_is_assembled(monkeypatch: pytest.MonkeyPatch) -> None:
     """Beyond the limits of a rocker that drives, pieces were halved seven times in vain: 18,000 poses."""
-    solved, between = [0], tabulated_chart.between
+    solved, between = [0], drive_table.between
 
     def counted(motion: ck.Motion, design: int, places: Any) -> ck.Motion:
         solved[0] += len(places)
         return between(motion, design, places)
 
-    monkeypatch.setattr(tabulated_chart, "between", counted)
+    monkeypatch.setattr(drive_table, "between", counted)
     plain = sprung()
     items = [item for item in plain.items if item is not plain.drives[0]]
     rocker = ck.Mechanism("By its rocker", *items, ck.drive("rocker"), units=SI)

@@ -49,18 +49,18 @@ from compoundkin.dynamics.reactions.reverse_pass import (
     stressed_blocks,
 )
 from compoundkin.dynamics.reactions.undetermined import spare_force
-from compoundkin.dynamics.simulation.driver_state import DriverState, PushedState, Rates, needs_time, unit_motion
-from compoundkin.dynamics.simulation.stop_contacts import holding
-from compoundkin.dynamics.simulation.tabulated_chart import (
+from compoundkin.dynamics.simulation.drive_table import (
     DRIVE_SCALES,
     POINTS,
     DriveTable,
     TablePiece,
-    TabulatedChart,
     accurate_pieces,
     drive_terms,
     piece_at,
 )
+from compoundkin.dynamics.simulation.driver_state import DriverState, PushedState, Rates, needs_time, unit_motion
+from compoundkin.dynamics.simulation.stop_contacts import holding
+from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.loads.friction import Friction

@@ -18,6 +18,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.friction.coulomb_friction import NotUniqueMotion
 from compoundkin.dynamics.simulation.coordinate_change import Chart, by_links, driven_there, fastest_pairs
 from compoundkin.dynamics.simulation.dormand_prince import PlainSolver
+from compoundkin.dynamics.simulation.drive_table import FASTER
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import DriverState, SimulatedState
 from compoundkin.dynamics.simulation.friction_chart import FrictionChart
@@ -65,7 +66,7 @@ from compoundkin.dynamics.simulation.step_lengths import (
     longest_step,
     stalls,
 )
-from compoundkin.dynamics.simulation.tabulated_chart import FASTER, TabulatedChart
+from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
 from compoundkin.model.loads.latch import Release
 
 # Where friction has no motion within a step, one that is so many times shorter is tried.
