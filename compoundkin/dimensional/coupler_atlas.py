@@ -40,8 +40,9 @@ from compoundkin.studies.samples.random_samples import SobolSample
 from compoundkin.studies.study_folder import part_columns, part_content
 from compoundkin.studies.study_program import StudyColumn
 
-# Poses of a turn of which a curve is made, and designs that are computed at once.
-POSES, BLOCK = 64, 4096
+# Poses of a turn of which a curve is made, those at which a design that is kept must be clear of limits (between 64 one
+# in a thousand passes one, where wheels turn fast), and designs that are computed at once.
+POSES, CLEAR_AT, BLOCK = 64, 512, 4096
 # A curve whose RMS radius is less than this part of its linkage's greatest number is the noise of a point at rest.
 LEAST_RADIUS = 0.05
 # Draws of a chain for each design that is kept, at most.
@@ -382,6 +383,7 @@ def _made(chain: CurveChain, count: int, seed: int, base: tuple[CurveChain, Numb
         drawn, curves = drawn[clear], curves[clear]
         own, radius = coefficients(curves)
         seen = radius > LEAST_RADIUS * chain.size(drawn)
+        seen[seen] = chain.curves(drawn[seen], CLEAR_AT)[1]
         designs.append(drawn[seen].astype(np.float32))
         found.append(own[seen].astype(np.complex64))
         kept += int(seen.sum())

@@ -1,8 +1,11 @@
 """Chains whose points trace curves: crank-driven linkages with free dimensions, as programs over many designs.
 
-A chain is a four-bar or a slider-crank; each dyad more lies on two of its links. With a dyad on two links of a four-bar
-that are not both its crank and frame this gives the six-bars of Watt and Stephenson that a crank on the frame drives
-through dyads alone (E. A. Dijksman, Motion Geometry of Mechanisms, Cambridge 1976), with a second dyad eight-bars.
+A chain is a four-bar, a slider-crank or a geared five-bar; each dyad more lies on two of its links. With a dyad on two
+links of a four-bar that are not both its crank and frame this gives the six-bars of Watt and Stephenson that a crank on
+the frame drives through dyads alone (E. A. Dijksman, Motion Geometry of Mechanisms, Cambridge 1976), with a second dyad
+eight-bars. A geared five-bar has two cranks on the frame that wheels couple; the ratio is whole, so that its curve
+closes in one turn (B. Roth and F. Freudenstein, Synthesis of path-generating mechanisms by numerical methods, J. Eng.
+Ind. 85 (1963) 298-304).
 
 A chain grows by a dyad that carries its point on: with the point at the dyad's joint it traces what it traced before,
 so that no growth loses anything.
@@ -10,6 +13,7 @@ so that no growth loses anything.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import combinations
@@ -25,12 +29,20 @@ from compoundkin.model.attributes import POSITION, component_names
 from compoundkin.model.elements import Item, Link, drive, link, mode
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import slide
+from compoundkin.model.pairs import belt, gear, slide
 from compoundkin.programs.call_numbers import Call
 from compoundkin.programs.compiled_path import CompiledPath, compile
 
 CRANK, ROCKER, SLIDER, ROD, LEVER, GUIDE = "crank", "rocker", "slider", "rod", "lever", "guide"
 GUIDE_OFFSET = f"{GUIDE}.offset"
+# The second crank of a geared five-bar, the bar from there to the coupler, and the wheels that couple both cranks.
+SECOND_CRANK, BAR, WHEELS = "crank2", "bar", "wheels"
+# What chains begin with.
+FOUR_BAR, SLIDER_CRANK, FIVE_BAR = "Four-bar", "Slider-crank", "Geared five-bar"
+# By how much the second crank of a geared five-bar turns as the first turns by one.
+RATIOS = (-1, 1, -2, 2)
+# Teeth of the smaller wheel.
+TEETH = 20
 # From where to where lengths of cranks and of other links are drawn, coordinates of points and offsets of guides on
 # either side of zero; the frame of a four-bar is two long.
 CRANKS, LENGTHS, PLACES, OFFSETS = (0.1, 1.2), (0.4, 6.0), (-4.0, 4.0), (-1.5, 1.5)
@@ -75,11 +87,12 @@ class AddedDyad(NamedTuple):
 
 
 class ChainPlan(NamedTuple):
-    """What a chain is made of: a slider-crank or a four-bar, dyads, and the link that has P."""
+    """What a chain is made of: what it begins with, dyads, the link that has P, and the `ratio` of a five-bar."""
 
-    with_slider: bool
+    base: str
     dyads: tuple[AddedDyad, ...]
     traced: str
+    ratio: int = 0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -97,12 +110,12 @@ class CurveChain(ShortRepr):
     @property
     def links(self) -> int:
         """How many links it has, the frame among them."""
-        return 4 + 2 * len(self.plan.dyads)
+        return (5 if self.plan.base == FIVE_BAR else 4) + 2 * len(self.plan.dyads)
 
     @property
     def has_slider(self) -> bool:
         """Whether one of its links slides."""
-        return self.plan.with_slider
+        return self.plan.base == SLIDER_CRANK
 
     @cached_property
     def program(self) -> CompiledPath:
@@ -160,13 +173,13 @@ class CurveChain(ShortRepr):
         """Return the chain with a dyad more, whose rod lies on the link of P and carries P on."""
         plan = self.plan
         names = _NAMES[len(plan.dyads)]
-        return curve_chain(ChainPlan(plan.with_slider, (*plan.dyads, AddedDyad(plan.traced, second, sign)), names.rod))
+        return curve_chain(plan._replace(dyads=(*plan.dyads, AddedDyad(plan.traced, second, sign)), traced=names.rod))
 
     @property
     def parent(self) -> CurveChain:
         """The chain that grew to this by its last dyad."""
         *dyads, last = self.plan.dyads
-        return curve_chain(ChainPlan(self.plan.with_slider, tuple(dyads), last.first))
+        return curve_chain(self.plan._replace(dyads=tuple(dyads), traced=last.first))
 
     def grown_designs(self, larger: CurveChain, designs: Number, units: Number, keep: bool = True) -> Number:
         """Return designs of the chain with a dyad more; `units` draw it. To `keep` P keeps its curve."""
@@ -184,45 +197,53 @@ class CurveChain(ShortRepr):
         dimensions = {name: value[0, 0] for name, value in self.dimensions(design[None]).items()}
         own = self.program.mechanism(dimensions)
         motion = solve(own, {CRANK: angles}, modes=self.program.modes, order=0)
-        size, still = abs(laying.scale), np.zeros(len(angles))
+        still = np.zeros(len(angles))
         z = {name: laying.laid(np.ravel(pose.z.c[0]) + still) for name, pose in motion.poses.items()}
         u = {name: laying.turned(np.ravel(pose.u.c[0]) + still) for name, pose in motion.poses.items()}
         z[FRAME], u[FRAME] = still + 0j, still + 1.0 + 0j
-        points = {
-            name: {
-                letter: complex(laying.laid(p) if name == FRAME else laying.as_seen(size * p))
-                for letter, p in each.items()
-            }
-            for name, each in own.geometry.points.items()
-        }
-        pairs = list[Item]()
-        if GUIDE_OFFSET in dimensions:
-            offset = size * float(dimensions[GUIDE_OFFSET])
-            pairs.append(guide(float(np.angle(laying.turned(1.0))), -offset if laying.mirrored else offset))
-        joints = [
-            [p for letter, p in each.items() if letter != POINT] for name, each in points.items() if name != FRAME
-        ]
+        points = _laid_points(own, laying)
         return Linkage(
             title=own.title,
             links=tuple(link(name, **each) for name, each in points.items()),
-            pairs=tuple(pairs),
+            pairs=tuple(self._laid_pairs(dimensions, laying, u)),
             places={letter: complex(laying.laid(np.ravel(at.position)[0])) for letter, at in motion.points.items()},
             z=z,
             u=u,
             drivers={CRANK: unwrapped(np.angle(u[CRANK]))},
             pivots=tuple(points[FRAME].values()),
-            lengths=tuple(abs(b - a) for each in joints for a, b in combinations(each, 2)),
+            lengths=tuple(abs(b - a) for name, each in points.items() if name != FRAME
+                          for a, b in combinations([p for letter, p in each.items() if letter != POINT], 2)),
             error=error,
             outputs=(f"{POINT}.{POSITION}",),
             source="an atlas of coupler curves",
-        )
+        )  # fmt: skip
+
+    def _laid_pairs(self, dimensions: dict[str, Number], laying: Laying, u: dict[str, Number]) -> Iterator[Item]:
+        """Yield the pairs that are no pins, where they lie with links of orientations `u`."""
+        if self.has_slider:
+            offset = abs(laying.scale) * float(dimensions[GUIDE_OFFSET])
+            yield guide(float(np.angle(laying.turned(1.0))), -offset if laying.mirrored else offset)
+        if self.plan.base == FIVE_BAR:
+            ratio = self.plan.ratio
+            yield wheels(ratio, float(np.angle(u[SECOND_CRANK][0] * np.conj(u[CRANK][0]) ** ratio)))
 
     @property
     def carriers(self) -> tuple[str, ...]:
         """The links that the second link of a dyad more may lie on."""
         added = [name for names in _NAMES[: len(self.plan.dyads)] for name in (names.rod, names.lever)]
-        base = (FRAME, CRANK, COUPLER) if self.has_slider else (FRAME, CRANK, COUPLER, ROCKER)
-        return tuple(name for name in (*base, *added) if name != self.plan.traced)
+        base = {SLIDER_CRANK: (), FOUR_BAR: (ROCKER,), FIVE_BAR: (SECOND_CRANK, BAR)}[self.plan.base]
+        return tuple(name for name in (FRAME, CRANK, COUPLER, *base, *added) if name != self.plan.traced)
+
+
+def _laid_points(own: Mechanism, laying: Laying) -> dict[str, dict[str, complex]]:
+    """Return the points of links of a mechanism in its units, where it is laid: those of the frame as places."""
+    size = abs(laying.scale)
+    return {
+        name: {
+            letter: complex(laying.laid(p) if name == FRAME else laying.as_seen(size * p)) for letter, p in each.items()
+        }
+        for name, each in own.geometry.points.items()
+    }
 
 
 def turn(poses: int) -> Number:
@@ -239,16 +260,17 @@ def _place(link_name: str, letter: str) -> list[FreeNumber]:
     return [FreeNumber(name, *PLACES, False, point) for name in component_names(point)]
 
 
-# The two links of a four-bar that a second dyad lies on, and what the six-bar is then called.
-_SIX_BARS = {
-    (COUPLER, FRAME): "Stephenson III",
-    (ROCKER, FRAME): "Watt II",
-    (COUPLER, ROCKER): "Watt I",
-    (CRANK, COUPLER): "Watt I, its ternary link driven",
-    (CRANK, ROCKER): "Stephenson I",
+# The two links that a second dyad lies on, and what the six-bar is then called.
+_SIX_BARS: dict[str, dict[tuple[str, str], str]] = {
+    FOUR_BAR: {
+        (COUPLER, FRAME): "Stephenson III",
+        (ROCKER, FRAME): "Watt II",
+        (COUPLER, ROCKER): "Watt I",
+        (CRANK, COUPLER): "Watt I, its ternary link driven",
+        (CRANK, ROCKER): "Stephenson I",
+    },
+    SLIDER_CRANK: {(COUPLER, FRAME): "Stephenson III with slider", (CRANK, COUPLER): "Watt I with slider"},
 }
-# Those of a slider-crank.
-_SIX_BARS_WITH_SLIDER = {(COUPLER, FRAME): "Stephenson III with slider", (CRANK, COUPLER): "Watt I with slider"}
 # Where P lies in the reference drawing.
 _POINT = 1.0 + 0.8j
 
@@ -279,16 +301,19 @@ def curve_chains(links: int = 6) -> tuple[CurveChain, ...]:
     """Return the chains of at most so many links: four, six or eight.
 
     >>> [len(curve_chains(links)) for links in (4, 6, 8)]
-    [2, 24, 232]
+    [2, 30, 238]
     """
-    found = [curve_chain(ChainPlan(with_slider, (), COUPLER)) for with_slider in (False, True)]
+    found = [curve_chain(ChainPlan(base, (), COUPLER)) for base in _SIX_BARS]
     if links >= 6:
-        for with_slider in (False, True):
-            for pair in _SIX_BARS_WITH_SLIDER if with_slider else _SIX_BARS:
+        for base, six_bars in _SIX_BARS.items():
+            for pair in six_bars:
                 # a link on the frame traces a circle
                 traced = (ROD,) if FRAME in pair else (ROD, LEVER)
-                found += [curve_chain(ChainPlan(with_slider, (AddedDyad(*pair, sign),), name))
+                found += [curve_chain(ChainPlan(base, (AddedDyad(*pair, sign),), name))
                           for sign in (1, -1) for name in traced]  # fmt: skip
+        # of equal wheels either crank may be called the first; the other mode is the mirror image
+        found += [curve_chain(ChainPlan(FIVE_BAR, (), name, ratio))
+                  for ratio in RATIOS for name in ((COUPLER,) if abs(ratio) == 1 else (COUPLER, BAR))]  # fmt: skip
     if links >= 8:
         six = [one for one in found if one.links == 6]
         found += [one.grown(second, sign) for one in six for second in one.carriers for sign in (1, -1)]
@@ -298,6 +323,13 @@ def curve_chains(links: int = 6) -> tuple[CurveChain, ...]:
 def guide(angle: float, offset: float) -> Item:
     """Return the guide of a slider at a distance from the crank's pivot."""
     return slide(SLIDER, on=FRAME, at="C", through="A", angle=angle, offset=offset, name=GUIDE)
+
+
+def wheels(ratio: int, phase: float) -> Item:
+    """Return what couples both cranks of a geared five-bar: gears, or a belt or chain where they turn alike."""
+    return (gear if ratio < 0 else belt)(
+        CRANK, SECOND_CRANK, teeth=(abs(ratio) * TEETH, TEETH), phase=phase, name=WHEELS
+    )
 
 
 @cache
@@ -313,7 +345,7 @@ def curve_chain(plan: ChainPlan) -> CurveChain:
         points.setdefault(names.rod, {})
         added += [_length(component_names(f"{name}.{names.joint}")[0]) for name in (names.rod, names.lever)]
     points.setdefault(plan.traced, {})[POINT] = _POINT
-    items, numbers = _base(plan.with_slider, points)
+    items, numbers = _base(plan, points)
     for names, dyad in zip(_NAMES, plan.dyads, strict=False):
         for name, letter in ((names.rod, names.on_first), (names.lever, names.on_second)):
             items.append(link(name, **{letter: 0, names.joint: names.length}, **points.get(name, {})))
@@ -324,28 +356,40 @@ def curve_chain(plan: ChainPlan) -> CurveChain:
 
 
 def _title(plan: ChainPlan) -> str:
+    base = f"{plan.base}, ratio {plan.ratio}" if plan.base == FIVE_BAR else plan.base
     if not plan.dyads:
-        return "Slider-crank" if plan.with_slider else "Four-bar"
-    known = _SIX_BARS_WITH_SLIDER if plan.with_slider else _SIX_BARS
+        return base
+    known = _SIX_BARS.get(plan.base, {})
     first, second, _ = plan.dyads[0]
-    six = known.get((first, second)) or known.get((second, first)) or f"Six-bar, with a dyad on {first} and {second}"
-    if len(plan.dyads) == 1:
-        return six
-    first, second, _ = plan.dyads[1]
-    return f"Eight-bar: {six}, with a dyad on {first} and {second}"
+    added = "".join(f", with a dyad on {first} and {second}" for first, second, _ in plan.dyads[1:])
+    six = known.get((first, second)) or known.get((second, first))
+    if six is None:
+        six = f"Six-bar, with a dyad on {first} and {second}" if plan.base != FIVE_BAR else ""
+    if not six:
+        return f"{base}, with a dyad on {first} and {second}{added}"
+    return f"Eight-bar: {six}{added}" if added else six
 
 
-def _base(with_slider: bool, extra: dict[str, dict[str, complex]]) -> tuple[list[Item], list[FreeNumber]]:
-    """Return the items of a four-bar or a slider-crank with more points on its links, and its numbers."""
+def _base(plan: ChainPlan, extra: dict[str, dict[str, complex]]) -> tuple[list[Item], list[FreeNumber]]:
+    """Return the items that a chain begins with, with more points on its links, and its numbers."""
 
     def points(name: str, **own: complex) -> Link:
         return link(name, **own, **extra.get(name, {}))
 
-    crank, numbers = points(CRANK, A=0, B=0.5), [_length("crank.B.x", CRANKS), _length("coupler.C.x")]
-    items: list[Item]
-    if with_slider:
-        items = [points(FRAME, A=0), crank, points(COUPLER, B=0, C=2), link(SLIDER, C=0)]
-        items += [guide(0.0, 0.3), mode(1, SLIDER)]
-        return items, [*numbers, FreeNumber(GUIDE_OFFSET, *OFFSETS, False)]
-    items = [points(FRAME, A=0, D=2), crank, points(COUPLER, B=0, C=2), points(ROCKER, D=0, C=2), mode(1, ROCKER)]
-    return items, [*numbers, _length("rocker.C.x")]
+    crank, coupler = points(CRANK, A=0, B=0.5), points(COUPLER, B=0, C=2)
+    numbers = [_length("crank.B.x", CRANKS), _length("coupler.C.x")]
+    if plan.base == SLIDER_CRANK:
+        sliding: list[Item] = [link(SLIDER, C=0), guide(0.0, 0.3), mode(1, SLIDER)]
+        return [points(FRAME, A=0), crank, coupler, *sliding], [*numbers, FreeNumber(GUIDE_OFFSET, *OFFSETS, False)]
+    frame = points(FRAME, A=0, D=2)
+    if plan.base == FOUR_BAR:
+        return [frame, crank, coupler, points(ROCKER, D=0, C=2), mode(1, ROCKER)], [*numbers, _length("rocker.C.x")]
+    second: list[Item] = [
+        points(SECOND_CRANK, D=0, E0=0.3 + 0.3j),
+        points(BAR, E0=0, C=2),
+        mode(1, BAR),
+        wheels(plan.ratio, 0.0),
+    ]
+    ends = [FreeNumber(name, -CRANKS[1], CRANKS[1], False, f"{SECOND_CRANK}.E0")
+            for name in component_names(f"{SECOND_CRANK}.E0")]  # fmt: skip
+    return [frame, crank, coupler, *second], [*numbers, _length("bar.C.x"), *ends]

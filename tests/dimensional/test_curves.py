@@ -14,7 +14,7 @@ from compoundkin.cli import cli
 from compoundkin.dimensional import coupler_atlas as atlases
 from compoundkin.dimensional import curve_fitting
 from compoundkin.dimensional.coupler_atlas import coefficients, coupler_atlas, likeness, mean_distance, resampled
-from compoundkin.dimensional.curve_chains import CurveChain, curve_chains, turn
+from compoundkin.dimensional.curve_chains import CurveChain, Laying, curve_chains, turn
 from compoundkin.errors import InvalidInput
 from compoundkin.files.curve_files import read_curve
 from compoundkin.synthesis.chains.mechanism_names import structure_name
@@ -104,11 +104,39 @@ def test_the_nearest_are_those_of_a_search_through_all(monkeypatch: pytest.Monke
     assert len({one.chain.title for one in found}) > 3
 
 
-@pytest.mark.parametrize("chain", curve_chains(), ids=lambda chain: chain.title)
+GEARED = [chain for chain in curve_chains() if chain.plan.ratio]
+
+
+@pytest.mark.parametrize("chain", [one for one in curve_chains() if one not in GEARED], ids=lambda chain: chain.title)
 def test_chains_are_what_they_are_called(chain: CurveChain) -> None:
     own, plain = (text.split(",")[0].split(" with ")[0].lower() for text in
                   (chain.title, str(structure_name(ck.decompose(chain.mechanism)))))  # fmt: skip
     assert own == plain
+
+
+@pytest.mark.parametrize("chain", GEARED, ids=lambda chain: f"{chain.title} {chain.plan.traced}")
+def test_geared_five_bars_are_two_circles_that_meet(chain: CurveChain) -> None:
+    """By the law of cosines in the triangle of both bars, the second crank turned by the ratio; closed in a turn."""
+    designs = chain.designs(np.random.default_rng(4).random((4096, len(chain.numbers))))
+    design = designs[chain.curves(designs, 64)[1]][3]
+    d = {name: value[0, 0] for name, value in chain.dimensions(design[None]).items()}
+    angles = turn(50)
+    b = d["crank.B.x"] * np.exp(1j * angles)
+    e = 2 + d["crank2.E0"] * np.exp(1j * chain.plan.ratio * angles)
+    p, q, r = d["coupler.C.x"], d["bar.C.x"], np.abs(e - b)
+    at_b = np.arccos((p**2 + r**2 - q**2) / (2 * p * r))
+    z = chain.places(design[None], angles)[0][0]
+    apart = []
+    for side in (1, -1):
+        c = b + p * np.exp(1j * (np.angle(e - b) + side * at_b))
+        on, foot, length = (b, c - b, p) if chain.plan.traced == "coupler" else (e, c - e, q)
+        apart.append(np.abs(on + d[f"{chain.plan.traced}.P"] * foot / length - z).max())
+    assert min(apart) < 1e-12 < max(apart)
+    laid = chain.linkage(design, Laying(2 * np.exp(1j), 3 + 1j, True), turn(12))
+    motion = ck.solve(laid.mechanism("crank", laid.drivers["crank"]))
+    assert np.allclose(np.ravel(motion.points["P"].position), laid.z[chain.plan.traced] + laid.u[chain.plan.traced]
+                       * next(one for one in laid.links if one.name == chain.plan.traced).points["P"])  # fmt: skip
+    assert ck.verify(motion).passed
 
 
 @pytest.mark.parametrize("chain", curve_chains()[::5], ids=lambda chain: chain.title)
@@ -265,7 +293,7 @@ def test_an_atlas_in_a_folder_is_opened_and_gives_the_same(tmp_path: Path) -> No
         coupler_atlas(4, 600, 2, tmp_path / "atlas")
 
 
-@pytest.mark.parametrize(("links", "count", "words"), [(5, 100, "take 4, 6 or 8"), (6, 3, "one of each chain: 24")])
+@pytest.mark.parametrize(("links", "count", "words"), [(5, 100, "take 4, 6 or 8"), (6, 3, "one of each chain: 30")])
 def test_wrong_atlases_say_what_would_do(links: int, count: int, words: str) -> None:
     with pytest.raises(InvalidInput, match=words):
         coupler_atlas(links, count)
