@@ -18,12 +18,14 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
+from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.driver_values import RATES, fit, timed
 from compoundkin.kinematics.solution import COUNTED
 from compoundkin.model.attributes import RATES as RATE_WORDS
 from compoundkin.model.elements import Drive
 from compoundkin.programs.call_numbers import COMPLEX, FLOAT, Call, CallNumbers, ReadyProgram, parameter_inputs
 from compoundkin.programs.graph.operation_graph import BEFORE, DRIVE, InputNumber
+from compoundkin.programs.limit_screening import MANY_VALUES, StepProgram, Steps
 from compoundkin.programs.recorded_path import PathVariants
 
 # So many plain numbers are kept as arrays, and so many plans.
@@ -50,9 +52,12 @@ class CallForm(NamedTuple):
         """Return the form of arguments; None where some are of other types than plans can read."""
         form: list[Any] = []
         numbers: list[Any] = []
-        for one in arguments:
+        pairs = range(0)
+        for k, one in enumerate(arguments):
             if type(one) is dict:
                 form.append((dict, *one))
+                if k == DIMENSIONS:
+                    pairs = range(len(numbers), len(numbers) + len(one))
                 numbers += one.values()
             else:
                 numbers.append(one)
@@ -74,9 +79,17 @@ class CallForm(NamedTuple):
                 form.append(None)
             elif kind in NUMBERS:
                 form.append(NUMBERS[kind])
+            elif kind is tuple and k in pairs and _is_point(one):
+                numbers[k] = complex(*one)
+                form.append(tuple)
             else:
                 return None
         return cls(tuple(form), numbers)
+
+
+def _is_point(pair: tuple[Any, ...]) -> bool:
+    """Tell whether a pair is that of a point: two finite real numbers."""
+    return len(pair) == 2 and all(NUMBERS.get(type(x)) is float and -LARGEST_FLOAT <= x <= LARGEST_FLOAT for x in pair)
 
 
 def _array_of_list(values: list[Any]) -> Any:
@@ -219,7 +232,7 @@ class TimedDriver(NamedTuple):
             if number is not None:
                 one = numbers[number]
                 is_array = isinstance(one, np.ndarray)
-                if not (np.isfinite(one).all() if is_array else -LARGEST_FLOAT <= one <= LARGEST_FLOAT):
+                if not (_are_finite(one) if is_array else -LARGEST_FLOAT <= one <= LARGEST_FLOAT):
                     return None
                 given[k] = one if is_array else float(one)
         return timed(self.drive, tuple(given), times, self.called, order)
@@ -230,7 +243,8 @@ class CallPlan(ShortRepr):
 
     `inputs` are the inputs in their order, `shape` is that of the call's arrays, `values` are the places of drivers'
     values among the inputs, by name. `before` are those of the values a pose before, of drivers that a call of one
-    design gives: they stand behind all inputs, in the values' own memory.
+    design gives: they stand behind all inputs, in the values' own memory. Where there are many, a copy of them would
+    take a tenth of the call: they are `borrowed` from the caller, by the same names.
     """
 
     def __init__(self, path: PathVariants, arguments: Sequence[Any], numbers: CallNumbers, array: ArrayOf) -> None:
@@ -261,7 +275,8 @@ class CallPlan(ShortRepr):
         row = (1, self.extent[1])
         laid = {place.inputs[0] for place in self._places if place.rows == row == self.extent != (1, 1)}
         moving = [name for name, k in self.values.items() if k in laid]
-        self.before = {name: len(self.inputs) + k for k, name in enumerate(moving)}
+        self.borrowed = {name: self.values[name] for name in moving if row[1] >= MANY_VALUES}
+        self.before = {name: len(self.inputs) + k for k, name in enumerate(moving) if name not in self.borrowed}
         # by the place where a driver's values go
         self._before = {self.values[name]: k for name, k in self.before.items()}
         self._own += [ZERO] * len(self.before)
@@ -296,7 +311,10 @@ class CallPlan(ShortRepr):
                 if (before := self._before.get(inputs[0])) is not None:
                     given[before], given[inputs[0]] = place.laid_twice(number)
                     continue
-                if inputs[0] not in values and not np.isfinite(number).all():
+                if inputs[0] in self.borrowed.values():
+                    given[inputs[0]] = number.reshape(place.rows)
+                    continue
+                if inputs[0] not in values and not _are_finite(number):
                     return None
                 given[inputs[0]] = place.laid(number.real if len(inputs) > 1 else number)
                 if len(inputs) > 1:
@@ -315,9 +333,12 @@ class CallPlan(ShortRepr):
     def _move(self, given: list[Number], numbers: Sequence[Any]) -> bool:
         """Put the drivers where they are at the times of a call; tell whether all is finite that says where."""
         times: Any = self.times if self._time is None else numbers[self._time]
-        if not (
-            np.isfinite(times).all() if isinstance(times, np.ndarray) else -LARGEST_FLOAT <= times <= LARGEST_FLOAT
-        ):
+        if isinstance(times, np.ndarray):
+            if not _are_finite(times):
+                return False
+            # what follows from a copy may stay as it is: the caller may change his before it is read
+            times = times.copy()
+        elif not -LARGEST_FLOAT <= times <= LARGEST_FLOAT:
             return False
         for one in self._timed:
             moved = one.moved(numbers, times, self._order)
@@ -330,7 +351,9 @@ class CallPlan(ShortRepr):
     def _laid(self, value: Number) -> Number:
         """Return a value of a driver in the form of inputs."""
         if isinstance(value, np.ndarray) and value.ndim:
-            return np.array(value if value.ndim == len(self.shape) == 1 else self._fitted(value), float, ndmin=2)
+            if value.ndim == len(self.shape) == 1:
+                return value[None] if value.dtype is FLOAT else np.array(value, float, ndmin=2)
+            return np.array(self._fitted(value), float, ndmin=2)
         return self.array(float(value))
 
     def still(self, zero: tuple[bool, ...]) -> frozenset[tuple[str, int]]:
@@ -363,7 +386,17 @@ def drive_inputs(name: str) -> tuple[InputNumber, ...]:
 
 
 def _is_zero(array: Number) -> bool:
-    return array.item(0) == 0.0 and not array.any()
+    # zeros are counted in less time than `any` takes
+    return bool(array.item(0) == 0.0) and not np.count_nonzero(array)
+
+
+def _are_finite(array: Number) -> bool:
+    """Tell whether all numbers of an array are finite, which it has some of."""
+    if array.dtype is not FLOAT:
+        return bool(np.isfinite(array).all())
+    # places of the extremes are found in less time than it takes to ask each number; NaN counts as either
+    least, greatest = array.item(array.argmin()), array.item(array.argmax())
+    return -LARGEST_FLOAT <= least <= LARGEST_FLOAT and bool(-LARGEST_FLOAT <= greatest <= LARGEST_FLOAT)
 
 
 def _is_plain_zero(array: Number) -> bool:
@@ -379,14 +412,33 @@ class ReadCall:
         self.plan, self.given, self.zero = plan, given, zero
 
     def numbers(self) -> CallNumbers:
-        """Return the inputs by name."""
+        """Return the inputs by name, to be used while the caller waits: some are borrowed from him."""
         plan = self.plan
         # what stands behind the inputs is no number of a call
         return CallNumbers(dict(zip(plan.inputs, self.given, strict=False)), plan.shape, plan.still(self.zero))
 
+    def kept_numbers(self) -> CallNumbers:
+        """Return the inputs by name, to be kept."""
+        given = self.given.copy()
+        for k in self.plan.borrowed.values():
+            given[k] = given[k].copy()
+        return ReadCall(self.plan, given, self.zero).numbers()
+
+    def unchanged_numbers(self, steps: StepProgram, found: Mapping[str, Steps]) -> CallNumbers:
+        """Return the inputs by name after the call.
+
+        Raises InvalidInput where borrowed ones have other marks now than were `found`.
+        """
+        numbers = self.kept_numbers()
+        for name, k in self.plan.borrowed.items():
+            if steps.found(self.given[k]).mark != found[name].mark:
+                what = "the array was changed after the call, whose values are no longer known"
+                raise InvalidInput(Problem(f"values.{name}", what, "solve the mechanism with the values that you want"))
+        return numbers
+
     def is_finite(self) -> bool:
         """Tell whether the drivers' values are finite; all else is."""
-        return all(np.isfinite(self.given[k]).all() for k in self.plan.values.values())
+        return all(_are_finite(self.given[k]) for k in self.plan.values.values())
 
     @property
     def driver_values(self) -> dict[str, Number]:

@@ -19,7 +19,6 @@ import numpy as np
 from compoundkin.base.arguments import real_numbers
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, missing_extra, suggestion
-from compoundkin.kinematics.curve.driver_path import SPACING
 from compoundkin.kinematics.driver_values import by_name
 from compoundkin.model.attributes import RATES
 from compoundkin.model.geometry import vector
@@ -35,7 +34,7 @@ from compoundkin.programs.graph.operation_graph import (
     InputNumber,
     OperationGraph,
 )
-from compoundkin.programs.limit_screening import safe_margin
+from compoundkin.programs.limit_screening import safe_margin, spacings
 from compoundkin.programs.recorded_path import PathVariants, RecordedPath
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 
@@ -129,11 +128,11 @@ class JaxPath(ShortRepr):
 
         if not margin.ndim:
             return margin >= safe_margin(1.0)
-        longest, order = jnp.ones(()), self.path.reference.solving_order
+        longest, spacing = jnp.ones(()), spacings(self.path.reference.solving_order)
         for one, value in drives.items():
             if one.part == "0" and jnp.ndim(value) and jnp.shape(value)[-1] > 1:
                 steps = jnp.max(jnp.abs(jnp.diff(jnp.asarray(value))), axis=-1)
-                longest = jnp.maximum(longest, steps / (order.unit(one.name) * SPACING))
+                longest = jnp.maximum(longest, steps / spacing[one.name])
         return jnp.min(margin, axis=-1) >= safe_margin(longest)
 
     def __repr__(self) -> str:

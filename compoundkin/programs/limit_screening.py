@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,8 +22,17 @@ from compoundkin.kinematics.curve.driver_path import MOST, SPACING, approach, dr
 from compoundkin.kinematics.curve.modes import StatedModes
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.motion import Motion
+from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, numbers_of_designs
-from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, HOLDS, LEAST, InputNumber, OperationGraph
+from compoundkin.programs.graph.operation_graph import (
+    DIMENSION,
+    DRIVE,
+    HOLDS,
+    LEAST,
+    TOTAL,
+    InputNumber,
+    OperationGraph,
+)
 from compoundkin.programs.recording.recorded_limits import CLOSE, RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import Recording, record_mechanism
 
@@ -52,10 +61,14 @@ class ScreenedDesigns(ShortRepr):
 def safe_margin(longest: Any) -> Any:
     """Return the margin above which a design needs no screening, of JAX or of NumPy.
 
-    It grows with the square of the longest step of a driver, in the spacings at which `solve` searches for change
-    points; steps below one count as one.
+    It grows with the square of the longest step of a driver, in its `spacings`; who asks counts steps below one as one.
     """
     return NEAR * longest**2
+
+
+def spacings(order: SolvingOrder) -> Mapping[str, float]:
+    """Return the spacing of each driver at which `solve` searches for change points."""
+    return {name: order.unit(name) * SPACING for name in order.structure.driven}
 
 
 def _longest_step(value: Number) -> float:
@@ -70,6 +83,13 @@ def _longest_step(value: Number) -> float:
 MANY_VALUES = 4_096
 
 
+class Steps(NamedTuple):
+    """The longest step from pose to pose, and a number that tells values, in their order, from changed ones."""
+
+    longest: float
+    mark: float
+
+
 class StepProgram(ShortRepr):
     """A program of the longest step of a driver from pose to pose, for many poses."""
 
@@ -77,20 +97,25 @@ class StepProgram(ShortRepr):
         self.backend = backend
         self._ready: dict[bool, ReadyProgram[str]] = {}
 
-    def longest(self, value: Number) -> float:
-        """Return the longest step among a driver's values, (1 or designs, poses)."""
+    def found(self, value: Number) -> Steps:
+        """Return the longest step among a driver's values, (1 or designs, poses), and their mark."""
         designs, poses = value.shape
         if (designs > 1) not in self._ready:
             self._ready[designs > 1] = self._made(value)
         # a step has no sign: the order of the two makes no difference
-        (least,) = self._ready[designs > 1].computed([value[:, :-1], value[:, 1:]], (designs, poses - 1))
-        return -float(least.item() if least.size == 1 else least.min())
+        least, mark = self._ready[designs > 1].computed([value[:, :-1], value[:, 1:]], (designs, poses - 1))
+        return Steps(-float(least.item() if least.size == 1 else least.min()), float(mark.item(0)))
 
     def _made(self, value: Number) -> ReadyProgram[str]:
         graph = OperationGraph()
         ends = [InputNumber(DRIVE, "", part) for part in ("before", "after")]
         numbers = CallNumbers(dict.fromkeys(ends, value), value.shape, frozenset())
-        return ReadyProgram.of(graph, {"": (longest_step(graph, *map(graph.input, ends)),)}, numbers, self.backend)
+        before, after = map(graph.input, ends)
+        # x + y + x y^2: the same values in another order have another sum
+        product = graph.apply("mul", before, graph.apply("mul", after, after))
+        mark = graph.apply(TOTAL, graph.apply("add", graph.apply("add", before, after), product))
+        nodes = {"": (longest_step(graph, before, after),), "mark": (mark,)}
+        return ReadyProgram.of(graph, nodes, numbers, self.backend)
 
 
 def longest_step(graph: OperationGraph, before: int, value: int) -> int:
@@ -111,12 +136,12 @@ class LimitScreening(ShortRepr):
         values: Mapping[str, Number],
         least: Number,
         numbers: Callable[[], CallNumbers],
-        steps: Mapping[str, Number] = MappingProxyType({}),
+        steps: Mapping[str, float] = MappingProxyType({}),
     ) -> bool:
         """Tell whether surely no design needs screening, as `needed` finds out of all of them.
 
         `numbers` gives those of the call, where the drivers' values are not enough to know; `steps` are the longest of
-        drivers, less than zero, as far as a program computed them beside.
+        drivers, as far as they are known.
         """
         margin = least.item() if least.size == 1 else float(least.min())
         return (
@@ -129,29 +154,28 @@ class LimitScreening(ShortRepr):
     def _clear(self) -> ClearApproaches:
         return ClearApproaches(self.approach)
 
-    def _safe_margin(self, values: Mapping[str, Number], steps: Mapping[str, Number] = MappingProxyType({})) -> float:
+    def _safe_margin(self, values: Mapping[str, Number], steps: Mapping[str, float] = MappingProxyType({})) -> float:
         return float(safe_margin(max(1.0, self._longest_step(values, steps))))
 
-    def _longest_step(self, values: Mapping[str, Number], steps: Mapping[str, Number] = MappingProxyType({})) -> float:
+    def _longest_step(self, values: Mapping[str, Number], steps: Mapping[str, float] = MappingProxyType({})) -> float:
         """Return the longest step of a driver, in its spacing."""
         longest = 0.0
         for name, value in values.items():
             if name in steps:
-                longest = max(longest, -steps[name].item() / self._spacings[name])
+                longest = max(longest, steps[name] / self._spacings[name])
             elif value.shape[1] > 1:
-                step = _longest_step(value) if value.size < MANY_VALUES else self._steps.longest(value)
+                step = _longest_step(value) if value.size < MANY_VALUES else self.steps.found(value).longest
                 longest = max(longest, step / self._spacings[name])
         return min(longest, float(MOST))
 
     @cached_property
-    def _steps(self) -> StepProgram:
+    def steps(self) -> StepProgram:
+        """The program of longest steps."""
         return StepProgram(self.backend)
 
     @cached_property
     def _spacings(self) -> Mapping[str, float]:
-        """The spacing of each driver at which `solve` searches for change points."""
-        order = self.recording.solving_order
-        return {name: order.unit(name) * SPACING for name in order.structure.driven}
+        return spacings(self.recording.solving_order)
 
     def needed(self, numbers: CallNumbers, least: Number) -> tuple[Number, Number]:
         """Return which designs need screening, and which have to be solved whatever it says."""

@@ -13,7 +13,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import Problem, UnknownName, suggestion
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import Description
-from compoundkin.programs.call_numbers import CallNumbers, numbers_of_designs
+from compoundkin.programs.call_numbers import COMPLEX, FLOAT, PLAIN_FLAGS, CallNumbers, numbers_of_designs
 from compoundkin.programs.limit_screening import ScreenedDesigns
 
 
@@ -58,8 +58,23 @@ class PathValues(Mapping[str, Any]):
         if found is None:
             raise UnknownName(Problem(str(name), "there is no such output", suggestion(str(name), list(self.found))))
         if found.size != prod(self.shape):
-            found = np.broadcast_to(found, self.numbers.extent)
+            found = np.broadcast_to(found, (prod(self.shape[:-1]), self.shape[-1] if self.shape else 1))
         return found.reshape(self.shape)
+
+    def arrays_for(self, vectors: Mapping[str, bool], shape: tuple[int, ...]) -> dict[str, Number] | None:
+        """Return its arrays (designs, poses) for the results of another call; None where they cannot hold them.
+
+        `vectors` are the outputs of that call, and which are vectors; `shape` is that of its arrays.
+        """
+        if self.shape != shape or not shape:
+            return None
+        for name, array in self.found.items():
+            kind = vectors.get(name)
+            if kind is None or array.dtype is not (COMPLEX if kind else FLOAT) or array.size != prod(shape):
+                return None
+            if array.flags.num & PLAIN_FLAGS != PLAIN_FLAGS:
+                return None
+        return dict(self.found)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.found)
@@ -80,8 +95,8 @@ class PathValues(Mapping[str, Any]):
     def motion(self, design: int = 0) -> Motion:
         """Return one design solved by `solve`, which reports failures with their reasons.
 
-        `design` counts along all axes but the last. Raises InvalidInput for an index out of range, NotAssembled
-        for a design without an assembled pose.
+        `design` counts along all axes but the last. Raises InvalidInput for an index out of range, or where the caller
+        has changed his array of driver values since; NotAssembled for a design without an assembled pose.
 
         >>> import compoundkin as ck
         >>> found = ck.compile(ck.load("slider-crank"), "B")()

@@ -118,6 +118,22 @@ def test_results_are_written_into_arrays_given(path):
     np.testing.assert_array_equal(found["G.acceleration"], expected["G.acceleration"])
 
 
+def test_results_of_an_earlier_call_take_those_of_a_later_one(path):
+    earlier, expected = path(CRANK, speed=1.0), path(CRANK, speed=2.0)
+    array = earlier["G.acceleration"]
+    found = path(CRANK, speed=2.0, out=earlier)
+    for name in OUTPUTS:
+        assert np.shares_memory(found[name], earlier[name])
+        np.testing.assert_array_equal(found[name], expected[name])
+    assert np.shares_memory(found["G.acceleration"], array)
+    with pytest.raises(InvalidInput, match=r"its shape is \(200,\), that of the call \(199,\)"):
+        path(CRANK[1:], speed=2.0, out=earlier)
+    # a speed that is constant fills no array that could be written pose by pose
+    resting = ck.compile(loaded("six-bar"), ["crank.angular_velocity", "G"])(CRANK, speed=2.0)
+    with pytest.raises(InvalidInput):
+        path(CRANK, out=resting)
+
+
 @pytest.mark.parametrize(
     ("out", "text"),
     [
@@ -181,6 +197,24 @@ def test_what_is_found_does_not_change_with_the_arrays_that_were_given(path, spe
     values += 1.0
     column *= 0.9
     np.testing.assert_allclose(found.motion(1).points["G"].position[0], found["G.position"][1], atol=1e-10)
+
+
+def test_many_values_are_borrowed_and_told_from_changed_ones(path):
+    values = np.linspace(0.3, 7.0, 5000)
+    found, again = path(values, speed=3.0), path(values, speed=3.0)
+    np.testing.assert_allclose(again.motion().points["G"].position[0], again["G.position"], atol=1e-10)
+    for changed in (values[::-1].copy(), np.roll(values, 1), values + 1e-9):
+        kept, again = values.copy(), path(values, speed=3.0)
+        values[:] = changed
+        with pytest.raises(InvalidInput, match=r"values\.crank: the array was changed after the call"):
+            again.motion()
+        values[:] = kept
+    # one that was read in full, and what was asked for before, keep their own
+    asked = path(values, speed=3.0)
+    asked.motion()
+    values += 1.0
+    for one in (found, asked):
+        np.testing.assert_allclose(one.motion().points["G"].position[0], one["G.position"], atol=1e-10)
 
 
 def test_several_drivers_go_by_name(arm):
@@ -265,6 +299,8 @@ FORMS = {
     "axes of designs": (CRANK + np.array([0.0, 0.1])[:, None, None], {"dimensions": {"crank.D": COLUMN}, "speed": 3.0}),
     "time": (0.2, {"time": np.linspace(0.0, 1.0, 40), "speed": 2.0, "acceleration": 0.3}),
     "uniform motion": (0.2, {"time": np.linspace(0.0, 1.0, 40), "speed": 2.0}),
+    "a point as a pair": (CRANK, {"dimensions": {"crank.D": (14, np.float64(0.1)), "plate.A.y": 0.1}}),
+    "many poses": (np.linspace(0.3, 7.0, 5000), {"speed": 2.0}),
 }
 
 
