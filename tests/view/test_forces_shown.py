@@ -7,11 +7,11 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.view.page.live.live_data import LiveData
+from compoundkin.view.page.live.recorded_forces import why_not_recorded
 from compoundkin.view.page.motion_data import MotionData
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.sketch.shapes import ShapeGroup, leaves
-from tests import catalog
-from tests.view.loaded import MASS, REACH, crank, crank_forces, six_bar_forces
+from tests.view.loaded import MASS, REACH, UNITS, crank, crank_forces, six_bar_forces
 
 
 def test_a_notebook_shows_forces_and_simulations() -> None:
@@ -61,14 +61,51 @@ def test_rounding_of_forces_is_zero_in_tables() -> None:
     assert np.abs(effort.values).max() <= sample.floor(effort)
 
 
-@pytest.mark.parametrize(
-    ("name", "is_live"),
-    # a general group and a spring, a table over the crank, gears; a guide that rubs, a table over the ram
-    [("andrews-squeezer-dynamics", True), ("engine-gas-pressure", True), ("planetary-train-torques", True),
-     ("shaper-cutting-force", False), ("geared-press", False)],
-)  # fmt: skip
-def test_pages_have_the_program_of_forces_where_it_reproduces_them(name: str, is_live: bool) -> None:
-    motion = catalog.motion(name)
-    moving = MotionData(Sample(motion, 0), most=9, with_centres=True)
-    found = LiveData(motion, moving.chosen, moving.links, moving.outputs, moving.drawn_forces).forces
-    assert (found is not None) == is_live
+# Every kind of load on a slider-crank, amounts of all sorts, and masses that are left out.
+TURN = {"at": [0, 2, 4], "values": [3, -5, 1], "period": 2 * np.pi}
+LOADS = {
+    "force": ck.force("rod", (3, -4), at=(60, 10), fixed_in="rod"),
+    "force while moving": ck.force("slider", (-400, 0), at="B", while_moving=(-1, 0)),
+    "force over the time": ck.force("slider", (0, {"at": [0, 0.1, 0.4], "values": [0, 9, 2], "smooth": True}), at="B"),
+    "torque over its rate": ck.torque("crank", {"over": "rate", "at": [0, 100], "values": [50, 0]}),
+    "effort over the crank": ck.effort("guide", {"over": "crank", "smooth": True, **TURN, "values": [3, -5, 3]}),
+    "effort over its slide": ck.effort("guide", {"at": [0, 90, 500], "values": [0, -7, 4]}, only="back"),
+    "effort at a pin over its angle": ck.effort("A", {"at": [-40, 0, 40], "values": [-9, 0, 20]}),
+    "pressure": ck.pressure("guide", {"at": [0, 500], "values": [0.3, 0.1]}, bore=40, rod=10, back=0.02),
+    "spring": ck.spring("rod", (50, 0), at=(90, 40), stiffness=2, free_length=30, preload=5),
+    "spring by a table, one way": ck.spring(
+        "slider", "B", at=(10, 30), stiffness={"at": [0, 500], "values": [0, 900]}, only="tension"
+    ),
+    "torsion spring one way": ck.spring(pair="A", stiffness=5, free=0.3, only="compression"),
+    "damper": ck.damper("rod", (50, 0), at=(90, 40), rate=0.2),
+    "damper along a pair": ck.damper(pair="guide", rate=0.3),
+    "elastic stop": ck.stop("guide", high=120, stiffness=30, damping=0.1),
+    "latch": ck.latch("guide", until=0.5),
+    "motor": ck.motor("crank", stall=900, no_load=200, gear=3, efficiency=0.8),
+    "bars without inertia": ck.gravity(0, -9.81),
+    "a function": ck.effort("guide", lambda s: -400.0 / (10 + s)),
+    "friction": ck.friction("guide", coefficient=0.1),
+}
+NOT_RECORDED = {
+    "a function": "effort along guide is a function in Python",
+    "friction": "friction is found at each pose",
+}
+
+
+@pytest.mark.parametrize("kind", LOADS)
+def test_each_kind_of_load_is_in_the_program_of_a_page_or_it_is_said_why_not(kind: str) -> None:
+    links = (
+        ck.link("frame", O=0), ck.link("crank", O=0, A=50), ck.link("rod", A=0, B=150, C=(60, 30)),
+        ck.link("slider", B=0), ck.slide("slider", name="guide", on="frame", at="B", through="O"),
+        ck.drive("crank", law=ck.laws.constant_speed(20.0)),
+    )  # fmt: skip
+    masses = ck.mass("crank", 0.3), ck.mass("rod", density=0.0004), ck.mass("slider", 0.2)
+    loaded = ck.Mechanism("Slider-crank", *links, *masses, LOADS[kind], units=UNITS)
+    motion = ck.solve(loaded, time=np.linspace(0, np.pi / 10, 37))
+    drawn = MotionData(Sample(motion, 0), with_centres=True).drawn_forces
+    assert drawn is not None
+    live = LiveData(motion, np.arange(37), tuple(motion.mechanism.links), (), drawn)
+    assert why_not_recorded(drawn).startswith(NOT_RECORDED.get(kind, ""))
+    assert (live.forces is None) == (kind in NOT_RECORDED)
+    if live.forces is not None:
+        assert set(live.forces.figures) >= {"guide.force", "A.moment", "crank.effort", "crank.power"}

@@ -78,7 +78,7 @@ class ForceComponents(ShortRepr):
             what = f"a {self.pair.title} has no {word!r}"
             raise UnknownName(Problem(self.pair.name, what, f"known: {', '.join(self.parts) or 'force and moment'}"))
         with np.errstate(all="ignore"):
-            return self.forces.motion.grid.known(_COMPONENTS[word](self))
+            return self.forces.motion.grid.known(force_component(self, word))
 
     @property
     def normal(self) -> Number:
@@ -459,6 +459,11 @@ def component_words(pair: Pair) -> tuple[str, ...]:
     if TANGENTIAL in words and as_transmitting_pair(pair):
         words += [SEPARATING, TOOTH_FORCE, FLANK]
     return (*words, FIRST_PULL, SECOND_PULL) if as_belt_drive(pair) else tuple(words)
+
+
+def force_component(of: ForceComponents, word: str) -> Number:
+    """Return a component of a pair's force by its word, which the pair's kind has."""
+    return _COMPONENTS[word](of)
 
 
 def _component(word: str, of: ForceComponents) -> Number:

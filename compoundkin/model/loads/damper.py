@@ -72,7 +72,7 @@ class Damper(Damping, PointToPointLoad):
         """Return its force; where its ends coincide, along their relative velocity."""
         amount = value_of(self.where, self.rate, at, self.variables(at))
         # ends that coincide move along the line on which they are before and after
-        line = np.where(np.asarray(gap.length) == 0.0, gap.velocity, gap.vector)
+        line = np.where(np.equal(gap.length, 0.0), gap.velocity, gap.vector)
         pull = amount if is_force_law(self.rate) else amount * gap.rate
         return EndSeparation(line, np.abs(line), gap.velocity).along(pull, self.where)
 

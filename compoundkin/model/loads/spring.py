@@ -151,7 +151,7 @@ def is_force_law(stiffness: Amount) -> bool:
 
 def is_active(pull: Number, only: str | None) -> Number:
     """Return where a one-sided spring acts; also where its pull is not a number."""
-    return ~(np.asarray(pull) <= 0.0) if only == TENSION else ~(np.asarray(pull) >= 0.0)
+    return np.logical_not(np.less_equal(pull, 0.0) if only == TENSION else np.greater_equal(pull, 0.0))
 
 
 def one_sided_pull(pull: Number, only: str | None) -> Number:

@@ -446,6 +446,7 @@ FUNCTIONS: dict[Any, Callable[..., Any]] = {
     np.zeros_like: _constant(0.0),
     np.ones_like: _constant(1.0),
     np.broadcast_to: _unchanged,
+    np.broadcast_arrays: lambda like, *values: [like.like(value) for value in values],
     np.ravel: _unchanged,
     np.real: lambda like, value: value.real,
     np.imag: lambda like, value: value.imag,

@@ -27,8 +27,8 @@ from compoundkin.model.attributes import (
     derivative_order,
     unit_of,
 )
-from compoundkin.view.page.live.live_data import DrawnForces
 from compoundkin.view.page.live.live_sketch import live_sketch
+from compoundkin.view.page.live.recorded_forces import DrawnForces
 from compoundkin.view.page.markup import component_values, packed_doubles, packed_floats
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.sketch import force_arrows

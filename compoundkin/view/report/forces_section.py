@@ -22,7 +22,16 @@ from compoundkin.dynamics.motor_sizing import sizing
 from compoundkin.dynamics.reactions.link_forces import LinkForces
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Measure, extremes
-from compoundkin.model.attributes import with_unit
+from compoundkin.model.attributes import (
+    EFFORT,
+    FORCE,
+    LENGTH,
+    MOMENT,
+    POWER,
+    SHAKING_FORCE,
+    SHAKING_MOMENT,
+    with_unit,
+)
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.amounts import LoadFunction, LoadTable
 from compoundkin.model.loads.contract import Load
@@ -50,6 +59,10 @@ MOST_SINGULAR, MOST_STRETCHES = 8, 6
 NOMINAL = 1.0
 # A free body of more poses than these is listed at the first pose only.
 MOST_POSES = 8
+# Between the name of the shaking moment and the point of the frame that it is about.
+ABOUT = " about "
+# Keys of rows, by which a live page computes them again; what is as written stays.
+RANGE_OF_FORCE, COURSE_OF_DRIVER, AS_WRITTEN = "force", "driver", "stays"
 # A force below this part of the largest one, or a moment below that part of it times the size, is rounding.
 FORCE_ROUNDING, NEGLIGIBLE = 1e-11, 1e-9
 
@@ -255,7 +268,8 @@ def masses_table(forces: Forces) -> TableBlock:
         (one.link, _first_number(one.mass), _place_text(one.at), _first_number(one.inertia))
         for one in mechanism.masses.values()
     ]
-    return TableBlock(columns, tuple(rows))
+    assumed = any(one.assumed for one in mechanism.masses.values())
+    return TableBlock(columns, tuple(rows), figures=() if assumed else ((AS_WRITTEN,),) * len(rows))
 
 
 def loads_table(forces: Forces) -> TableBlock:
@@ -263,7 +277,8 @@ def loads_table(forces: Forces) -> TableBlock:
     rows = [
         (one.name, one.title, ", ".join(one.links), _load_values(one)) for one in forces.motion.mechanism.loads.values()
     ]
-    return TableBlock((Column("load"), Column("kind"), Column("on"), Column("as written")), tuple(rows))
+    columns = (Column("load"), Column("kind"), Column("on"), Column("as written"))
+    return TableBlock(columns, tuple(rows), figures=((AS_WRITTEN,),) * len(rows))
 
 
 def _load_values(load: Load) -> str:
@@ -321,17 +336,19 @@ def reactions_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
     figures = tuple(figure for name in forces.pairs for figure in _pair_figures(forces, name))
     yield Paragraph(f"{what}, between the poses too. Least and greatest:")
     columns = Column("pair"), Column("on"), Column("quantity"), Column("unit"), *extremes_columns(sample)
-    yield TableBlock(columns, _extremes_rows(sample, forces, figures), keys=1)
+    yield TableBlock(columns, _extremes_rows(sample, forces, figures), keys=1, figures=_keys(figures))
 
 
 def _pair_figures(forces: Forces, name: str) -> Iterator[ForceFigure]:
     """Yield the size of the force in a pair, and its moment unless a driver's effort or zero."""
     own, units = forces.pairs[name], forces.units
     on = own.pair.members[1]
-    yield ForceFigure((name, on, "force"), units.force, lambda own: np.abs(own.pairs[name].force), True)
+    yield ForceFigure(
+        (name, on, "force"), units.force, f"{name}.{FORCE}", lambda own: np.abs(own.pairs[name].force), True
+    )
     is_driven = any(step.pair.name == name for step in forces.motion.structure.driven.values())
     if not (is_driven and own.pair.free_is_angle) and not _is_negligible(forces, own.moment):
-        yield ForceFigure((name, on, "moment"), units.moment, lambda own: own.pairs[name].moment)
+        yield ForceFigure((name, on, "moment"), units.moment, f"{name}.{MOMENT}", lambda own: own.pairs[name].moment)
 
 
 def _is_negligible(forces: Forces, moment: Number) -> bool:
@@ -347,15 +364,17 @@ def drives_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
     if not figures:
         return
     yield Paragraph("Drivers, the torque or thrust along the driver's own coordinate, positive where it drives it up:")
-    rows: list[tuple[Cell, ...]] = []
+    rows, keys = list[tuple[Cell, ...]](), list[tuple[str, ...]]()
     for figure, row in zip(figures, _extremes_rows(sample, forces, figures), strict=True):
         values = np.asarray(figure.of(forces))
         root = float(np.sqrt(mean_over_motion(forces, values**2, sample.design)))
         mean = mean_over_motion(forces, values, sample.design)
         rows += _also_customary((*row[:3], 0.0 if abs(mean) <= NEGLIGIBLE * root else mean, root, *row[3:]), (3, 4))
+        other = customary_unit(figure.unit)
+        keys += [(COURSE_OF_DRIVER, figure.name), *([(COURSE_OF_DRIVER, figure.name, repr(other[1]))] if other else [])]
     first = Column("driver"), Column("quantity"), Column("unit")
     columns = (*first, Column("mean", style="each"), Column("rms", style="each"), *extremes_columns(sample))
-    yield TableBlock(columns, tuple(rows), keys=1)
+    yield TableBlock(columns, tuple(rows), keys=1, figures=tuple(keys))
 
 
 def _also_customary(row: tuple[Cell, ...], means: tuple[int, ...]) -> Iterator[tuple[Cell, ...]]:
@@ -402,23 +421,33 @@ def _to_three_digits(number: float) -> Cell:
 def _drive_figures(forces: Forces, name: str) -> Iterator[ForceFigure]:
     units, is_angle = forces.units, forces.motion.drives[name].is_angle
     what, unit = ("torque", units.moment) if is_angle else ("thrust", units.force)
-    yield ForceFigure((name, what), unit, lambda own: own.drives[name].effort)
+    yield ForceFigure((name, what), unit, f"{name}.{EFFORT}", lambda own: own.drives[name].effort)
     if forces.motion.order:
-        yield ForceFigure((name, "power"), units.power, lambda own: own.drives[name].power)
+        yield ForceFigure((name, "power"), units.power, f"{name}.{POWER}", lambda own: own.drives[name].power)
 
 
 def _shaking_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
     """Yield the shaking force, and its moment about a point of the frame."""
-    letter, units = _frame_point(forces), forces.units
-    figures = (ForceFigure(("force",), units.force, lambda own: np.abs(own.shaking.force), True),
-               ForceFigure((f"moment about {letter or 'the origin'}",), units.moment,
+    letter, units = frame_point(forces), forces.units
+    whole = f"{FRAME}.{SHAKING_FORCE}"
+    figures = (ForceFigure(("force",), units.force, whole, lambda own: np.abs(own.shaking.force), True),
+               ForceFigure((f"moment about {letter or 'the origin'}",), units.moment, shaking_moment(letter),
                            lambda own: own.shaking.moment_about(letter or 0j)))  # fmt: skip
     yield Paragraph("The mechanism on its frame (shaking force), reactions of the drivers included:")
     columns = Column("on the frame"), Column("unit"), *extremes_columns(sample)
-    yield TableBlock(columns, _extremes_rows(sample, forces, figures), keys=1)
+    yield TableBlock(columns, _extremes_rows(sample, forces, figures), keys=1, figures=_keys(figures))
 
 
-def _frame_point(forces: Forces) -> str:
+def shaking_moment(letter: str) -> str:
+    """Return the name of the shaking moment about a point of the frame, or about the origin.
+
+    >>> shaking_moment("A"), shaking_moment("")
+    ('frame.shaking_moment about A', 'frame.shaking_moment')
+    """
+    return f"{FRAME}.{SHAKING_MOMENT}{ABOUT}{letter}" if letter else f"{FRAME}.{SHAKING_MOMENT}"
+
+
+def frame_point(forces: Forces) -> str:
     """Return the reference point of the shaking moment: the first driver's, else the frame's first; "" for neither."""
     points = forces.mechanism.geometry.points[FRAME]
     letters = [driven.pair.letters[0] for driven in forces.motion.structure.driven.values()]
@@ -444,8 +473,8 @@ def _friction_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
 def _friction_figures(forces: Forces, name: str) -> Iterator[ForceFigure]:
     units, is_moment = forces.units, forces.friction.pairs[name].is_moment
     what, unit = ("moment", units.moment) if is_moment else ("force", units.force)
-    yield ForceFigure((name, what), unit, lambda own: own.friction.pairs[name].friction)
-    yield ForceFigure((name, "power"), units.power, lambda own: own.friction.pairs[name].power)
+    yield ForceFigure((name, what), unit, "", lambda own: own.friction.pairs[name].friction)
+    yield ForceFigure((name, "power"), units.power, "", lambda own: own.friction.pairs[name].power)
 
 
 def _efficiency_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
@@ -471,17 +500,27 @@ def _locking_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
 
 @dataclass(frozen=True)
 class ForceFigure:
-    """A real figure of forces: the first cells of its row, its unit, and the function of forces that gives it."""
+    """A real figure of forces: the first cells of its row, its unit, its name, the function of forces that gives it."""
 
     labels: tuple[str, ...]
     unit: str
+    name: str
     of: Callable[[Forces], Number]
     is_length: bool = False
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What a live page computes it again by: the quantity of forces, of a vector its length."""
+        return (RANGE_OF_FORCE, f"{self.name}.{LENGTH}" if self.is_length else self.name)
 
     def finite(self, motion: Motion) -> Number:
         """Return the figure of a motion's forces, NaN where it is infinite."""
         values = np.asarray(self.of(motion.forces))
         return np.where(np.isfinite(values), values, np.nan)
+
+
+def _keys(figures: Sequence[ForceFigure]) -> tuple[tuple[str, ...], ...]:
+    return tuple(figure.key for figure in figures)
 
 
 def _extremes_rows(sample: Sample, forces: Forces, figures: Sequence[ForceFigure]) -> tuple[tuple[Cell, ...], ...]:

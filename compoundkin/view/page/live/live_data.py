@@ -6,22 +6,16 @@ Where the program reproduces the solved values of the mechanism's own dimensions
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple, cast
+from typing import Any
 
 import numpy as np
 
 from compoundkin.analysis.characteristics.outputs import chosen_outputs, outputs_of
 from compoundkin.analysis.characteristics.transmission import coriolis_names, index_names
-from compoundkin.base.arrays import Number, is_number, unwrapped
+from compoundkin.base.arrays import Number, unwrapped
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
-from compoundkin.base.series import Series, as_series
-from compoundkin.base.wrenches import Wrench
-from compoundkin.dynamics.forces import Forces
-from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
-from compoundkin.dynamics.reactions.link_wrench import DRIVER, INERTIA, PAIR, WEIGHT
-from compoundkin.dynamics.reactions.reverse_pass import all_reactions
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.one_design import motion_of_design
 from compoundkin.kinematics.quantities import quantity
@@ -29,26 +23,21 @@ from compoundkin.model.attributes import (
     LENGTH,
     OF_LINKS,
     RADIANS,
-    TIME,
     coordinate_dimension,
     derivative_order,
     motion_figure,
     unit_of,
 )
-from compoundkin.model.loads.amounts import planar_value_of, tables_of
-from compoundkin.model.loads.contract import Load
-from compoundkin.model.loads.mass import Mass
 from compoundkin.programs.dimensions import FreeDimension
-from compoundkin.programs.graph.operation_graph import InputNumber
 from compoundkin.programs.page_program import PageProgram, RecordedReason
-from compoundkin.programs.recording.recorded_motion import ProgramOutput, RecordedMotion, output_of
-from compoundkin.programs.recording.recorded_number import RecordedNumber
+from compoundkin.programs.recording.recorded_motion import ProgramOutput, output_of
 from compoundkin.programs.solved_designs import seed_values
 from compoundkin.view.page.live.compact_data import table_data
 from compoundkin.view.page.live.panel_data import panel_data, template_data
+from compoundkin.view.page.live.recorded_forces import DrawnForces, RecordedForces, figure_names, why_not_recorded
 from compoundkin.view.page.markup import packed_doubles
+from compoundkin.view.report.forces_section import frame_point
 from compoundkin.view.report.pose_sample import Sample
-from compoundkin.view.sketch.force_arrows import ForceCourse, described_wrench
 
 # In parts of the largest value: what is packed with seven digits agrees.
 AGREES = 1e-9
@@ -87,15 +76,16 @@ class LiveData:
 
     @cached_property
     def forces(self) -> RecordedForces | None:
-        """The drawn forces as the program has them; None where it does not reproduce them."""
-        if self.drawn is None or self.drawn.forces.friction_forces is not None or self.drawn.forces.relaxed:
+        """The forces as the program has them; None where it cannot, or does not reproduce what is drawn."""
+        if self.drawn is None or why_not_recorded(self.drawn):
             return None
+        names = figure_names(self.drawn.forces, self.names, frame_point(self.drawn.forces))
         try:
-            found = RecordedForces.of(self._without_forces, self.drawn, self.motion)
-        except (CompoundkinError, TypeError, ValueError, AttributeError):
-            # loads that are no straight-line arithmetic of one pose
+            found = RecordedForces.of(self._without_forces, self.drawn, self.motion, names)
+        except CompoundkinError:
+            # amounts that are no numbers of one pose
             return None
-        return found if found.agrees(self.chosen) else None
+        return found.agreeing(self.chosen)
 
     def _told(self) -> Iterator[ProgramOutput]:
         """Yield the page's outputs, and what its figures are made of."""
@@ -136,8 +126,17 @@ class LiveData:
                 "links": [self._link(name) for name in self.links],
                 "outputs": list(self._outputs()),
             },
-            **({} if self.forces is None else {"forces": self.forces.data(self.places, self.chosen)}),
+            **self._forces(),
         }
+
+    def _forces(self) -> dict[str, Any]:
+        """Return the forces, or why they do not follow changed dimensions."""
+        if self.drawn is None:
+            return {}
+        if self.forces is not None:
+            return {"forces": self.forces.data(self.places, self.chosen)}
+        why = why_not_recorded(self.drawn) or "a load is not a number of one pose"
+        return {"noForces": why}
 
     def _groups(self) -> Iterator[dict[str, Any]]:
         """Yield what may keep a pose from being assembled: groups, guides with ends, pairs that do not fit; and why."""
@@ -273,174 +272,6 @@ class ReproducedValues:
             values = unwrapped(np.where(values == -np.pi, np.pi, values))
         largest = np.nanmax(np.abs(np.where(np.isfinite(known), known, 0.0)), initial=1e-300)
         return bool(np.allclose(values, known, rtol=0.0, atol=AGREES * largest + 1e-12, equal_nan=True))
-
-
-class DrawnForces(NamedTuple):
-    """Forces with the courses that are drawn: as arrows, and as arcs."""
-
-    forces: Forces
-    arrows: tuple[ForceCourse, ...]
-    arcs: tuple[ForceCourse, ...]
-
-
-@dataclass(frozen=True)
-class RecordedLoads(LoadedBlock):
-    """The loads of a recorded mechanism. Amounts over drivers or the time are `rows`, known at the poses."""
-
-    program: PageProgram = field(kw_only=True)
-    own: Motion = field(kw_only=True)
-    rows: dict[InputNumber, Number] = field(default_factory=dict, kw_only=True)
-
-    @property
-    def time(self) -> Number | None:
-        """The time, which is no number of one pose."""
-        return None
-
-    def place(self, link: str, point: str | complex) -> Series:
-        """Return the position of a point of a link."""
-        own = self.program.mechanism.geometry.points[link][point] if isinstance(point, str) else point
-        return as_series(self.block.world[link].at(own))
-
-    def coordinate(self, name: str) -> Series:
-        """Return the free coordinate of a driver, or of a pair that slides. Raises InvalidInput for other angles."""
-        if name in self.program.mechanism.drives:
-            return self.program.mechanism.drives[name]
-        pair, sign = self._meant(name)
-        if pair.free_is_angle:
-            raise InvalidInput(Problem(name, "the turns of its angle are counted along the motion"))
-        return Series(tuple(one * sign for one in pair.coordinate(self._ends(pair), self._poses(pair)).c))
-
-    def fitted(self, value: Any, where: str = "load") -> Number:
-        """Return a value that is one number. Raises InvalidInput for others."""
-        if isinstance(value, RecordedNumber):
-            return value
-        if np.size(value) != 1:
-            raise InvalidInput(Problem(where, "it is one number for each pose"))
-        return np.ravel(value)[0].item()
-
-    def named_loads(self) -> Iterator[tuple[Load | Mass, str, Wrench]]:
-        """Yield each load and each weight, with a link and its wrench there."""
-        mechanism = self.own.mechanism
-        for load in mechanism.loads.values():
-            changes = {key: self._amount(load, key, getattr(load, key)) for key in load.amounts}
-            for link, wrench in replace(load, **changes).wrenches(self):
-                yield load, link, wrench
-        for mass in mechanism.masses.values() if mechanism.gravity != 0 else ():
-            yield mass, mass.link, self.weight(mass)
-
-    def _amount(self, load: Load, key: str, amount: Any) -> Any:
-        """Return an amount, as a row where it is a table over a driver, or over the time."""
-        over = [one.over for one in tables_of(amount)]
-        if not over or not all(one == TIME or one in self.program.mechanism.drives for one in over):
-            return amount
-        values = [planar_value_of(load.where, amount, at) for at in loaded_blocks(self.own)]
-        whole = np.concatenate([np.broadcast_to(one, (1, np.shape(one)[-1])) for one in values], axis=1)
-        parts = {"x": whole.real, "y": whole.imag} if np.iscomplexobj(whole) else {"": whole}
-        given = [InputNumber("load", f"{load.name}.{key}", part) for part in parts]
-        self.rows.update(zip(given, parts.values(), strict=True))
-        return RecordedNumber.given(self.program.mechanism.graph, *given)
-
-
-@dataclass(frozen=True, eq=False)
-class RecordedForces:
-    """The drawn forces of a mechanism in its program: nodes of place, force and moment, by course.
-
-    `rows` are the amounts of loads that are given.
-    """
-
-    program: PageProgram
-    drawn: DrawnForces
-    nodes: tuple[tuple[int, ...], ...]
-    rows: Mapping[InputNumber, Number]
-
-    @classmethod
-    def of(cls, program: PageProgram, drawn: DrawnForces, motion: Motion) -> RecordedForces:
-        """Record them. Raises InvalidInput and what Python does for loads that cannot be recorded."""
-        mechanism, whole = program.mechanism, slice(None)
-        recorded = cast("Motion", RecordedMotion(mechanism))
-        at = RecordedLoads(recorded, mechanism.block, whole, whole, program=program, own=motion)
-        acting = dict(_acting(at, drawn.forces))
-        nodes = list[tuple[int, ...]]()
-        for course in (*drawn.arrows, *drawn.arcs):
-            place, wrench = acting[course.shown.description]
-            one = mechanism.number(place), mechanism.number(wrench.force), mechanism.number(wrench.about(place))
-            nodes.append((one[0].real.x, one[0].imag.x, one[1].real.x, one[1].imag.x, one[2].x))
-        return cls(program.with_more([k for one in nodes for k in one], at.rows), drawn, tuple(nodes), at.rows)
-
-    def agrees(self, chosen: Number) -> bool:
-        """Return whether the program reproduces them, wherever it has finite numbers."""
-        every = [k for one in self.nodes for k in one]
-        with np.errstate(all="ignore"):
-            found = iter(self.program.own(every, chosen, self.rows))
-        courses = (*self.drawn.arrows, *self.drawn.arcs)
-        known = [(one.at[chosen], one.force[chosen], one.moment[chosen]) for one in courses]
-        sizes = [max((float(np.nanmax(np.abs(rows[k]), initial=0.0)) for rows in known), default=0.0) for k in range(3)]
-        sizes[2] = max(sizes[2], sizes[1] * self.program.motion.size)
-        for place, force, moment in known:
-            pairs = zip((place.real, place.imag, force.real, force.imag, moment), (0, 0, 1, 1, 2), strict=True)
-            for own, k in pairs:
-                value = np.broadcast_to(next(found), np.shape(own))
-                both = np.isfinite(value) & np.isfinite(own)
-                if np.count_nonzero(both) < np.count_nonzero(np.isfinite(own)) / 2.0:
-                    return False
-                if not np.allclose(value[both], own[both], rtol=0.0, atol=AGREES * max(sizes[k], 1e-300)):
-                    return False
-        return True
-
-    def data(self, places: Mapping[int, int], chosen: Number) -> dict[str, Any]:
-        """Return where they are found by a script, and the given rows."""
-        at = [[places[node] for node in one] for one in self.nodes]
-        count = len(self.drawn.arrows)
-        rows = [packed_doubles(np.broadcast_to(one, self.program.motion.failed.shape)[0][chosen])
-                for one in self.rows.values()]  # fmt: skip
-        return {"arrows": at[:count], "arcs": at[count:], "rows": rows}
-
-
-def _acting(at: RecordedLoads, forces: Forces) -> Iterator[tuple[str, tuple[Number, Wrench]]]:
-    """Yield the place and the wrench of all that acts on links, by what describes it."""
-    order, mechanism = at.program.mechanism.order, at.own.mechanism
-    known: dict[str, Wrench] = {}
-    pins = dict[tuple[str, str], Wrench]()
-    for what, link, wrench in at.named_loads():
-        known[link] = known.get(link, Wrench()) + wrench
-        point = what.at if isinstance(what, Mass) else what.attack(link)
-        by = "" if isinstance(what, Mass) else next((name for name in what.links if name != link), "")
-        place = at.place(link, point).c[0] if point is not None else _line(at, link, wrench)
-        yield described_wrench(WEIGHT if isinstance(what, Mass) else what.title, what.name, link, by), (place, wrench)
-        if not isinstance(what, Mass) and what.pin:
-            pins[what.pin, link] = pins.get((what.pin, link), Wrench()) + wrench
-    for mass in mechanism.masses.values() if forces.inertia else ():
-        wrench = at.inertia(mass)
-        known[mass.link] = known.get(mass.link, Wrench()) + wrench
-        place = at.place(mass.link, mass.at).c[0]
-        yield described_wrench(INERTIA, mass.name, mass.link, ""), (place, wrench)
-    driven = {one.pair.name: one for one in order.structure.driven.values()}
-    written = {pair.name for pair in mechanism.written_pairs}
-    for name, wrench in all_reactions(at, known).pairs.items():
-        pair, ends = at.pair(name)
-        poses = tuple(at.block.world[link] for link in pair.members)
-        place = pair.acting_place(ends, poses)
-        unit = pair.wrenches(ends, poses)[-1]
-        for link, by, sign in ((pair.members[1], pair.members[0], 1.0), (pair.members[0], pair.members[1], -1.0)):
-            whole = wrench.times(sign)
-            if name in driven:
-                held = unit.times(driven[name].pair.effort(ends, poses, wrench) * sign)
-                yield described_wrench(DRIVER, driven[name].drive.name, link, by), (place, held)
-                whole = whole - held
-            if name not in written:
-                pins[pair.letters[0], link] = pins.get((pair.letters[0], link), Wrench()) + whole
-            yield described_wrench(PAIR, name, link, by), (place, whole)
-    for (letter, link), wrench in pins.items():
-        place = at.place(forces.mechanism.real_pins[letter][0], letter).c[0]
-        yield described_wrench(PAIR, letter, link, letter), (place, wrench)
-
-
-def _line(at: RecordedLoads, link: str, wrench: Wrench) -> Number:
-    """Return the point of a line of action nearest to a link's origin."""
-    origin, force = at.block.world[link].z.c[0], wrench.force
-    if is_number(force, 0):
-        return origin
-    return origin - 1j * force * wrench.about(origin) / np.abs(force) ** 2
 
 
 def followed_quantities(motion: Motion, outputs: Sequence[str] = ()) -> tuple[str, ...]:

@@ -26,7 +26,8 @@ from compoundkin.programs.page_program import operation_table
 from compoundkin.programs.recording.recorded_mechanism import recorded_ends, recorded_geometry
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.view.page.live.compact_data import table_data
-from compoundkin.view.page.live.live_data import DrawnForces, live_data
+from compoundkin.view.page.live.live_data import live_data
+from compoundkin.view.page.live.recorded_forces import DrawnForces
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.sketch.kinematic_sketch import MovingPart, MovingSketch, carried_parts, carried_shapes
 from compoundkin.view.sketch.painter import ON_LINE, SAME, Painter

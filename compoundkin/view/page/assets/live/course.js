@@ -18,13 +18,20 @@
       const { path, numbers, solved, player } = design;
       Object.assign(this, { path, numbers, solved, player, last: player.poses - 1, known: new Map() });
       this.time = player.along.name === "time" ? player.along.values : null;
-      this.wrapped = Object.fromEntries(path.program.outputs.map(({ name, wrapped }) => [name, wrapped]));
+      this.wrapped = Object.fromEntries(path.outputs.map(({ name, wrapped }) => [name, wrapped]));
       this.jumps = paired(player.data.plots?.jumps ?? []);
     }
     // what is natural for a length or an angle, or a rate of it
     scale(kind, order) {
       const known = this.player.data.plots?.rounding[kind];
       return known ? known[order] / ROUNDING : 1;
+    }
+    // the largest force in any pair at the median pose: next to singular poses forces grow without limit
+    get largestForce() {
+      return (this.forced ??= median((this.path.data.forces?.pairs ?? []).map((name) => this.solved.outputs[name]).filter(Boolean), this.last + 1));
+    }
+    isOfForces(name) {
+      return (this.path.data.forces?.outputs ?? []).some((one) => one.name === name);
     }
     // where it is known what the drivers do: at poses, and on both sides of jumps in the place of a pose that is one
     get knots() {
@@ -48,7 +55,7 @@
     }
     at(s) {
       const k = Math.round(Math.min(Math.max(s, 0), this.last));
-      return this.path.at(this.numbers, this.drives(s), this.solved, k);
+      return this.path.at(this.numbers, this.drives(s), this.solved, k, s);
     }
     isAssembled(s) {
       return Boolean(this.at(s).assembled);
@@ -100,6 +107,14 @@
     }
   }
 
+  const median = (forces, poses) => {
+    const sizes = Float64Array.from({ length: poses }, (_, k) => forces.reduce((most, { x, y }) => {
+      const size = Math.hypot(x[k], y[k]);
+      return Number.isFinite(size) && size > most ? size : most;
+    }, 0)).sort();
+    return (sizes[(poses - 1) >> 1] + sizes[poses >> 1]) / 2 || sizes[poses - 1];
+  };
+
   // both sides of jumps: [place before, place after], one of them null at an end of the motion
   const paired = (jumps) => {
     const [ends, begins] = [false, true].map((kind) => jumps.filter((one) => one.begins === kind).map(({ place }) => place));
@@ -122,9 +137,29 @@
       const near = this.values[k] === this.values[k] ? k : k > s ? Math.floor(s) : Math.ceil(s);
       return value + TURN * Math.round((this.values[near] - value) / TURN);
     }
+    // where it is smooth: forces are switched by loads that act one way only
+    get stretches() {
+      if (this.smooth) return this.smooth;
+      const { stretches } = this.whole, cuts = this.whole.isOfForces(this.name) ? page.Curve.switches([Array.from(this.values)]) : new Set();
+      return (this.smooth = stretches.flatMap((one) => {
+        if (!cuts.has(one.low) || one.high !== one.low + 1) return [one];
+        const [before, after] = this.switch(one.low, one.high);
+        return [{ ...one, high: before, ends: [one.ends[0], false] }, { ...one, low: after, ends: [false, one.ends[1]] }];
+      }));
+    }
+    // both sides of a switch: the half on which it steps further
+    switch(low, high) {
+      let [a, b] = [this.at(low), this.at(high)];
+      for (let n = 0; n < HALVINGS; n++) {
+        const middle = (low + high) / 2, value = this.at(middle);
+        if (middle === low || middle === high) break;
+        if (Math.abs(value - a) > Math.abs(b - value)) [high, b] = [middle, value]; else [low, a] = [middle, value];
+      }
+      return [low, high];
+    }
     // the greatest of the values times a sign, and where it is first taken; `scale` tells what is rounding
     greatest(sign, scale) {
-      const { stretches } = this.whole, { values } = this, offers = [];
+      const { stretches, values } = this, offers = [];
       const bend = (k) => {
         const j = Math.min(Math.max(k, 1), this.whole.last - 1);
         return Math.abs(values[j - 1] - 2 * values[j] + values[j + 1]);
@@ -187,7 +222,7 @@
       return { low, high, isConstant, slack: high.slack };
     }
     withoutLimit(low, high) {
-      for (const { low: a, high: b, ends } of this.whole.stretches) {
+      for (const { low: a, high: b, ends } of this.stretches) {
         ends.forEach((ends, side) => {
           if (!ends) return;
           const [first, second] = NEAR_LIMIT.map((t) => this.at(side ? b - t * t * (b - a) : a + t * t * (b - a)));

@@ -9,8 +9,12 @@
   const RESTS = 100; // milliseconds without a change after which tables follow
   const SLICE = 6; // milliseconds of work between two pictures of the screen
   const ROUNDING = 1e-12; // of what is natural for a quantity, as in the report
+  const FORCE_ROUNDING = 1e-11, NEGLIGIBLE = 1e-9; // of the largest force, of a mean beside its root mean square: as in forces_section.py
   const NEARLY = 1e-8, FLOOR = 1e-8; // as in range_rows.py: places, and lengths that pass zero, are known to so much
   const ALWAYS = "always", LIMITLESS = "without limit", NO_LIMIT = "no limit", NOTHING = "-";
+
+  // forces follow where the page's program has them
+  const FOLLOWING = player.data.live.forces ? "#outputs, #performance, #forces" : "#outputs, #performance";
 
   // --- numbers as the report writes them ------------------------------------------------------------------------------
   const trimmed = (text) => (text.includes(".") ? text.replace(/\.?0+$/, "") : text);
@@ -62,7 +66,7 @@
   const rows = [...document.querySelectorAll("tr[data-figure]")].map((tr) => {
     const [kind, ...names] = JSON.parse(tr.dataset.figure);
     return { tr, kind, names, cells: [...tr.cells], unit: unitOf(tr.cells[1].textContent) };
-  });
+  }).filter(({ kind }) => kind !== "stays");
   const added = [];
   const { along } = player;
   const farthest = along.values.reduce((all, value) => Math.max(all, Math.abs(value)), 0);
@@ -161,6 +165,37 @@
     });
   };
 
+  // --- forces -----------------------------------------------------------------------------------------------------------
+  const force = (courses, [name, by = "1"]) => {
+    const course = courses.of(name), { largestForce: largest } = courses, factor = Number(by);
+    if (!course) return null;
+    const found = course.range(2, largest);
+    if (found.none) return [null, null, null, null];
+    const [low, high] = [found.low, found.high].map(({ value, at }) => ({ value: value * factor, at }));
+    return extremes({ low, high }, FORCE_ROUNDING * largest * factor);
+  };
+  // a driver's effort or power, with its mean and root mean square over the motion
+  const driver = (courses, [name, by = "1"]) => {
+    const ends = force(courses, [name, by]);
+    return ends && [...means(courses.of(name).values, Number(by)), ...ends];
+  };
+  const means = (values, by) => {
+    const mean = averaged(values) * by, root = Math.sqrt(averaged(values.map((value) => value ** 2))) * by;
+    return [Math.abs(mean) <= NEGLIGIBLE * root ? 0 : mean, root];
+  };
+  // over the time, or what the only driver that moves goes through, else over the poses; of poses that are known
+  const averaged = (values) => {
+    const at = along.name === "pose" ? player.indices : along.values;
+    let sum = 0, whole = 0;
+    for (let k = 1; k < values.length; k++) {
+      const [a, b] = [values[k - 1], values[k]], step = Math.abs(at[k] - at[k - 1]);
+      if (!Number.isFinite(a) || !Number.isFinite(b)) continue;
+      sum += (step * (a + b)) / 2;
+      whole += step;
+    }
+    return sum / whole;
+  };
+
   // --- the poses ----------------------------------------------------------------------------------------------------------
   const outputs = () => {
     // rows that are folded away wait until they are asked for
@@ -200,10 +235,13 @@
     velocity_ratio: (courses, [name], unit) => ofRange(ratio(courses, name, unit.kind ?? "angle"), varied),
     advantage: (courses, [name], unit) => ofRange(ratio(courses, name, unit.kind ?? "angle"), advantage),
     stroke,
+    force,
+    driver,
   };
   const behind = [
     ...document.querySelectorAll("#performance > :is(p, .alert)"),
-    ...[...document.querySelectorAll(":is(#performance, #outputs) > .grid")].filter((one) => !one.querySelector("[data-figure], [data-pose]")),
+    ...[...document.querySelectorAll("#forces > :is(p, .alert)")].filter((one) => !/^Assumed|:$/.test(one.textContent)),
+    ...[...document.querySelectorAll(":is(#performance, #outputs, #forces) > .grid")].filter((one) => !one.querySelector("[data-figure], [data-pose]")),
     ...posed.filter((row) => !indices.has(Number(row.dataset.pose))),
   ];
   // in parts, so that a page may draw between them
@@ -237,7 +275,7 @@
     while (performance.now() - begun < SLICE) if (rest.next().done) return;
     waits = setTimeout(() => sliced(rest));
   };
-  const notes = [...document.querySelectorAll("#outputs, #performance")].map((section) => {
+  const notes = [...document.querySelectorAll(FOLLOWING)].map((section) => {
     const note = document.createElement("p");
     Object.assign(note, { className: "italics", hidden: true, textContent: "What is in italics is of the original dimensions." });
     section.append(note);
@@ -249,6 +287,6 @@
     waits = setTimeout(() => sliced(), RESTS);
   });
   document.querySelector("#outputs .tools .more")?.addEventListener("click", () => { if (design.isChanged) outputs(); });
-  for (const section of document.querySelectorAll("#outputs, #performance, #motion")) section.dataset.follows = "";
+  for (const section of document.querySelectorAll(`${FOLLOWING}, #motion`)) section.dataset.follows = "";
   page.figures = { follow };
 })();

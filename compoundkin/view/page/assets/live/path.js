@@ -44,9 +44,13 @@
       this.whole = new page.Machine(this.program, data.poses);
       this.one = new page.Machine(this.program, 1);
       this.drives.flat().forEach((values, k) => this.whole.rows[k].set(values));
-      // amounts of loads that hang on drivers and the time alone
-      const before = 3 * this.drives.length + live.states.length;
-      (live.forces?.rows ?? []).forEach((text, k) => this.whole.rows[before + k].set(page.unpacked(text, data.poses)));
+      // what loads need that one pose does not know, given at the poses
+      this.firstGiven = 3 * this.drives.length + live.states.length;
+      this.given = (live.forces?.rows ?? []).map((text) => page.unpacked(text, data.poses));
+      this.given.forEach((values, k) => this.whole.rows[this.firstGiven + k].set(values));
+      // quantities of forces come last of all
+      this.outputs = [...live.program.outputs, ...(live.forces?.outputs ?? [])];
+      this.last = this.program.ends[live.forces ? 4 : 2];
       this.states = new page.States(live, this.program, { start: this.start, values: this.drives.map(([values]) => values), single: this.one });
       this.home = { numbers: this.own, values: live.states.map(({ own }) => page.unpacked(own, data.poses)), sides: null };
     }
@@ -56,10 +60,10 @@
 
     // the motion for dimensions; `near` is that of dimensions nearby. Without rates only positions are computed.
     solved(numbers, near = null, { rates = true } = {}) {
-      const machine = this.whole, { links, outputs, ends } = this.program;
+      const machine = this.whole, { outputs, last } = this, { links, ends } = this.program;
       const states = this.states.any ? this.states.carried(machine, numbers, this.near(near), this.home) : null;
       if (!states) machine.take(numbers);
-      machine.run(states ? ends[0] : 0, rates ? ends[2] : ends[1]);
+      machine.run(states ? ends[0] : 0, rates ? last : ends[1]);
       const { failed, assembled } = this.closed(machine);
       const known = (place) => {
         const found = machine.copy(place);
@@ -116,8 +120,8 @@
       return Object.fromEntries(Object.entries(parts).map(([part, place]) => [part, told(place)]));
     }
 
-    // brings the machine of one pose to it, for some of the program's sections
-    posed(numbers, drives, near, k, section) {
+    // brings the machine of one pose to it, for some of the program's sections; `place` is between the poses
+    posed(numbers, drives, near, k, section, place = k) {
       const machine = this.one;
       const states = this.states.any ? this.near(near).values.map((row) => row[k]) : null;
       machine.take(numbers);
@@ -126,12 +130,14 @@
         this.states.newton(machine, states);
         this.states.give(machine, states, 0);
       }
+      const low = Math.min(Math.floor(place), this.poses - 2), part = place - low;
+      this.given.forEach((row, index) => { machine.rows[this.firstGiven + index][0] = part ? row[low] + part * (row[low + 1] - row[low]) : row[low]; });
       machine.run(0, this.program.ends[section]);
       return machine;
     }
-    // one pose: drives are [value, rate, second] of each driver, `k` is the pose nearest
-    at(numbers, drives, near = null, k = this.start) {
-      const machine = this.posed(numbers, drives, near, k, 2), { links, outputs } = this.program;
+    // one pose: drives are [value, rate, second] of each driver, `k` is the pose nearest to the place
+    at(numbers, drives, near = null, k = this.start, place = k) {
+      const machine = this.posed(numbers, drives, near, k, this.data.forces ? 4 : 2, place), { outputs } = this, { links } = this.program;
       const { failed } = this.closed(machine);
       const known = (place) => (failed[0] ? NaN : machine.row(place, 0)[0]);
       const moved = ({ at }) => {

@@ -113,7 +113,8 @@
       button.textContent = isFolded ? "Show" : "Hide";
       button.setAttribute("aria-expanded", String(!isFolded));
     });
-    made.append(`${ORIGINAL} `, button);
+    const why = section.id === "forces" && design.player.data.live.noForces;
+    made.append(why ? `Of the original dimensions, for ${why}. ` : `${ORIGINAL} `, button);
     return made;
   };
   design.on("change", () => {
