@@ -107,3 +107,23 @@ _FIGURES: Mapping[Kind, Mapping[str, Figure]] = {
         )
     ),
 }
+
+
+# Between the name of the shaking moment and the point of the frame that it is about.
+ABOUT = " about "
+
+
+def shaking_moment(letter: str) -> str:
+    """Return the name of the shaking moment about a point of the frame, or about the origin.
+
+    >>> shaking_moment("A"), shaking_moment("")
+    ('frame.shaking_moment about A', 'frame.shaking_moment')
+    """
+    return f"{FRAME}.{SHAKING_MOMENT}{ABOUT}{letter}" if letter else f"{FRAME}.{SHAKING_MOMENT}"
+
+
+def frame_point(forces: ForceResult) -> str:
+    """Return the reference point of the shaking moment: the first driver's, else the frame's first; "" for neither."""
+    points = forces.mechanism.geometry.points[FRAME]
+    letters = [driven.pair.letters[0] for driven in forces.motion.structure.driven.values()]
+    return next((one for one in (*letters, *points) if one in points), "")

@@ -19,6 +19,7 @@ from compoundkin.dynamics.driver_course import speed_text
 from compoundkin.dynamics.force_analysis import passed_stops
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.motor_sizing import sizing
+from compoundkin.dynamics.reactions.force_figures import frame_point, shaking_moment
 from compoundkin.dynamics.reactions.link_forces import LinkForces
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import Measure, extremes
@@ -29,7 +30,6 @@ from compoundkin.model.attributes import (
     MOMENT,
     POWER,
     SHAKING_FORCE,
-    SHAKING_MOMENT,
     with_unit,
 )
 from compoundkin.model.geometry import FRAME
@@ -59,8 +59,6 @@ MOST_SINGULAR, MOST_STRETCHES = 8, 6
 NOMINAL = 1.0
 # A free body of more poses than these is listed at the first pose only.
 MOST_POSES = 8
-# Between the name of the shaking moment and the point of the frame that it is about.
-ABOUT = " about "
 # Keys of rows, by which a live page computes them again; what is as written stays.
 RANGE_OF_FORCE, COURSE_OF_DRIVER, AS_WRITTEN = "force", "driver", "stays"
 # A force below this part of the largest one, or a moment below that part of it times the size, is rounding.
@@ -436,22 +434,6 @@ def _shaking_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:
     yield Paragraph("The mechanism on its frame (shaking force), reactions of the drivers included:")
     columns = Column("on the frame"), Column("unit"), *extremes_columns(sample)
     yield TableBlock(columns, _extremes_rows(sample, forces, figures), keys=1, figures=_keys(figures))
-
-
-def shaking_moment(letter: str) -> str:
-    """Return the name of the shaking moment about a point of the frame, or about the origin.
-
-    >>> shaking_moment("A"), shaking_moment("")
-    ('frame.shaking_moment about A', 'frame.shaking_moment')
-    """
-    return f"{FRAME}.{SHAKING_MOMENT}{ABOUT}{letter}" if letter else f"{FRAME}.{SHAKING_MOMENT}"
-
-
-def frame_point(forces: Forces) -> str:
-    """Return the reference point of the shaking moment: the first driver's, else the frame's first; "" for neither."""
-    points = forces.mechanism.geometry.points[FRAME]
-    letters = [driven.pair.letters[0] for driven in forces.motion.structure.driven.values()]
-    return next((one for one in (*letters, *points) if one in points), "")
 
 
 def _friction_blocks(sample: Sample, forces: Forces) -> Iterator[Block]:

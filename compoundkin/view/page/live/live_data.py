@@ -16,6 +16,7 @@ from compoundkin.analysis.characteristics.outputs import chosen_outputs, outputs
 from compoundkin.analysis.characteristics.transmission import coriolis_names, index_names
 from compoundkin.base.arrays import Number, unwrapped
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
+from compoundkin.dynamics.reactions.force_figures import frame_point
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.one_design import motion_of_design
 from compoundkin.kinematics.quantities import quantity
@@ -36,7 +37,6 @@ from compoundkin.view.page.live.compact_data import table_data
 from compoundkin.view.page.live.panel_data import panel_data, template_data
 from compoundkin.view.page.live.recorded_forces import DrawnForces, RecordedForces, figure_names, why_not_recorded
 from compoundkin.view.page.markup import packed_doubles
-from compoundkin.view.report.forces_section import frame_point
 from compoundkin.view.report.pose_sample import Sample
 
 # In parts of the largest value: what is packed with seven digits agrees.

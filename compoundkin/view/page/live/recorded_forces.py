@@ -23,7 +23,7 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.force_result import ForceResult
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.loaded_block import LoadedBlock
-from compoundkin.dynamics.reactions.force_figures import force_figure
+from compoundkin.dynamics.reactions.force_figures import ABOUT, force_figure, shaking_moment
 from compoundkin.dynamics.reactions.link_wrench import DRIVER, INERTIA, PAIR, WEIGHT
 from compoundkin.dynamics.reactions.pair_forces import ForceComponents, force_component
 from compoundkin.dynamics.reactions.reverse_pass import Reactions, all_reactions
@@ -53,7 +53,6 @@ from compoundkin.programs.recording.recorded_motion import RecordedMotion
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.structure.mobility_count import DrivenPair
 from compoundkin.view.page.markup import packed_doubles
-from compoundkin.view.report.forces_section import ABOUT, shaking_moment
 from compoundkin.view.sketch.force_arrows import ForceCourse, described_wrench
 
 # In parts of the largest value of a kind: the program and the analysis agree.

@@ -240,6 +240,7 @@
   };
   const behind = [
     ...document.querySelectorAll("#performance > :is(p, .alert)"),
+    ...document.querySelectorAll("#forces > figure"),
     ...[...document.querySelectorAll("#forces > :is(p, .alert)")].filter((one) => !/^Assumed|:$/.test(one.textContent)),
     ...[...document.querySelectorAll(":is(#performance, #outputs, #forces) > .grid")].filter((one) => !one.querySelector("[data-figure], [data-pose]")),
     ...posed.filter((row) => !indices.has(Number(row.dataset.pose))),
