@@ -67,11 +67,11 @@ class LoadedBlock:
     def _counted(self, pair: Pair) -> Number:
         """Return an angle with its turns over the whole motion, computed once for all blocks."""
         if pair.name not in self.counted:
-            self.counted[pair.name] = fit(self.motion.shape)(self._angle(pair))
+            self.counted[pair.name] = fit(self.motion.shape)(self.counted_angle(pair))
         return self._cut(self.counted[pair.name])
 
-    def _angle(self, pair: Pair) -> Number:
-        """Return the angle of a pair, or between two links of a multiple pin that no pair joins.
+    def counted_angle(self, pair: Pair) -> Number:
+        """Return the angle of a pair with its turns, or between two links of a multiple pin that no pair joins.
 
         A driver's is as it is driven, whatever turn it starts in.
         """

@@ -168,7 +168,7 @@ class RecordedLoads(LoadedBlock):
 
     def _own_angle(self, pair: Pair) -> Number:
         """Return the angle of a pair along the own motion, its turns counted."""
-        return LoadedBlock(self.own, self.block, slice(None), slice(None))._angle(pair)
+        return LoadedBlock(self.own, self.block, slice(None), slice(None)).counted_angle(pair)
 
     def fitted(self, value: Any, where: str = "load") -> Number:
         """Return a value that is one number. Raises InvalidInput for others."""
