@@ -63,6 +63,20 @@ def decompose(mechanism: Mechanism) -> Structure:
     >>> [(group.name, group.links) for group in decompose(four_bar).groups]
     [('RRR', ('coupler', 'rocker'))]
     """
+    return _moving(mechanism, everywhere=True)
+
+
+@one_thread
+def decompose_near_drawing(mechanism: Mechanism) -> Structure:
+    """Take a mechanism apart as `decompose` does, in a time that is bounded: for who asks at each step of a drawing.
+
+    Whether it moves though it is overconstrained is only looked for near the drawing, where random starts may take
+    seconds, most of all with cams.
+    """
+    return _moving(mechanism, everywhere=False)
+
+
+def _moving(mechanism: Mechanism, everywhere: bool) -> Structure:
     with without_collection():
         structure = decomposed(mechanism)
     if not any(fault.kind == "over" for fault in structure.faults):
@@ -72,7 +86,7 @@ def decompose(mechanism: Mechanism) -> Structure:
     # what looks at dimensions is loaded for those few that need it
     from compoundkin.structure.redundancy.diagnosis import without_redundancy
 
-    return without_redundancy(structure, decomposed)
+    return without_redundancy(structure, decomposed, everywhere)
 
 
 def _at_general_dimensions(fault: Fault) -> Fault:

@@ -13,7 +13,7 @@ import re
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import product
 from math import floor, isfinite, log10
@@ -38,6 +38,7 @@ from compoundkin.model.pairs.contract import Pair, as_drivable
 from compoundkin.model.pairs.cylinder import Stroke
 from compoundkin.model.pairs.symbols import Groove, Outline, Wheel
 from compoundkin.structure import Fault, Structure, decompose
+from compoundkin.structure.decomposition import decompose_near_drawing
 from compoundkin.studio.edited_document import Document, Placement, written_place
 from compoundkin.studio.edits import edited
 from compoundkin.studio.findings import (
@@ -107,11 +108,27 @@ class Reading:
     mechanism: Mechanism | None
     problems: tuple[Problem, ...]
     aside: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # names of links, `drives[1]` and the like
+    # whether what is overconstrained is looked for everywhere, or near the drawing only, which takes no time
+    is_searched: bool = False
 
     @cached_property
     def structure(self) -> Structure | None:
         """The mechanism taken apart."""
-        return decompose(self.mechanism) if self.mechanism is not None else None
+        if self.mechanism is None:
+            return None
+        return decompose(self.mechanism) if self.is_searched else decompose_near_drawing(self.mechanism)
+
+    @cached_property
+    def searched(self) -> Reading:
+        """This reading, in which a motion of what is overconstrained is looked for everywhere."""
+        return replace(self, is_searched=True) if self.may_move else self
+
+    @property
+    def may_move(self) -> bool:
+        """Whether it holds too much near the drawing, and may move elsewhere."""
+        if self.is_searched or self.structure is None or self.structure.mechanism.unplaced:
+            return False
+        return any(fault.kind == "over" for fault in self.structure.faults)
 
     @cached_property
     def letters(self) -> dict[str, tuple[str, ...]]:
@@ -277,12 +294,14 @@ def _solved(reading: Reading, pose: int | None) -> tuple[dict[str, complex], dic
     motion = reading.first_pose if pose is None else None
     if motion is None:
         try:
-            motion = reading.motion
+            motion = reading.motion if pose is None else reading.searched.motion
         except CompoundkinError:
             motion = None
     if motion is None:
         return {}, {}
     whole = np.flatnonzero(motion.failed[0] == 0)
+    if not whole.size:
+        return {}, {}
     k = pose if pose is not None and 0 <= pose < motion.failed.shape[1] and motion.failed[0, pose] == 0 else whole[0]
     poses = {}
     for name, one in motion.poses.items():
@@ -376,6 +395,10 @@ def _structure(document: str, question: Mapping[str, Any]) -> Reply:
     except InvalidMechanism as error:
         told = located(error, document) if syntax_of(document) == "toml" else error
         return {"problems": [_problem(one) for one in told.problems], "is_text": False}
+    return _told(reading)
+
+
+def _told(reading: Reading) -> Reply:
     drawing, structure, mechanism = drawing_of(reading), reading.structure, reading.mechanism
     colours, driven = _colours(structure), structure.driven if structure else {}
     return {
@@ -412,6 +435,7 @@ def _structure(document: str, question: Mapping[str, Any]) -> Reply:
         "faults": list(_faults(reading)),
         "problems": [_problem(one) for one in reading.problems if not _is_fault(one, reading)],
         "moves": bool(structure and not structure.faults and driven and not structure.mechanism.unplaced),
+        "may_move": reading.may_move and bool(driven),
     }
 
 
@@ -579,8 +603,11 @@ def _may_be_driven(pair: Pair, fault: Fault, driven: set[tuple[str, str]]) -> bo
 
 
 def _motion(document: str, question: Mapping[str, Any]) -> Reply:
-    """Reply all poses of all points over the range of the drivers, and where it cannot be assembled: why."""
-    reading = reading_of(document)
+    """Reply all poses of all points over the range of the drivers, and where it cannot be assembled: why.
+
+    With its structure where that moves though it seemed not to near the drawing.
+    """
+    reading = reading_of(document).searched
     motion = reading.motion
     if motion is None:
         return {"problems": [], "poses": 0}
@@ -611,6 +638,7 @@ def _motion(document: str, question: Mapping[str, Any]) -> Reply:
         "start": _nearest(motion, drawing_of(reading)),
         "gaps": [] if good.all() else list(_gaps(motion)),
         "problems": [],
+        **({"structure": _told(reading)} if reading.is_searched else {}),
     }
 
 
@@ -719,6 +747,7 @@ def _offers(document: str, question: Mapping[str, Any]) -> Reply:
 
 def _shown(reading: Reading) -> DrivenStructure:
     """Return the structure with the drivers' values that are shown. Raises InvalidInput where there is none."""
+    reading = reading.searched
     if reading.structure is None:
         raise InvalidInput(Problem("", "it is no mechanism yet", "mend what is missing"))
     return DrivenStructure(reading.structure, _range(reading.structure.mechanism))

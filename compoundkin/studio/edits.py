@@ -394,8 +394,10 @@ def _driver(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     else:
         if len(carriers) < 2:
             raise refused(f"no two links are joined at {letter}", "ground it, or join a bar there")
-        link = edit.get("link", next(name for name in carriers if name not in (FRAME, edit.get("on"))))
+        link = edit.get("link", next((name for name in carriers if name not in (FRAME, edit.get("on"))), FRAME))
         on = edit.get("on", next(name for name in carriers if name != link))
+        if link in (on, FRAME):
+            raise refused(f"no link turns on {on} at {letter}", "name another link")
         table = {"link": link}
         shared = [k for k in sheet.points(on) if k in sheet.points(link)] if on in sheet.links else []
         if len(shared) > 1:

@@ -314,28 +314,31 @@ def _system(equations: ConstraintEquations, goal: Array | None, state: Array) ->
     return np.concatenate([residual, gap]), np.vstack([rows, equations.driving(state) * np.array(signs)[:, None]])
 
 
-def assemble(equations: ConstraintEquations) -> AssembledPose:
-    """Find an assembled pose near the drawing, the drivers free. Without one, they are at their first values if any."""
+def assemble(equations: ConstraintEquations, everywhere: bool = True) -> AssembledPose:
+    """Find an assembled pose near the drawing, the drivers free. Without one, they are at their first values if any.
+
+    What the drawing does not show is looked for from random starts too, `everywhere` or not at all.
+    """
     mechanism = equations.mechanism
     if mechanism.sketch:
-        return _nearest(equations, None)
+        return _nearest(equations, None, everywhere)
     drives = zip(mechanism.drives, equations.driven, strict=True)
     values = [
         (SOMEWHERE if pair.free_is_angle else 0.0) if drive.values is None else float(first_entry(drive.values))
         for drive, pair in drives
     ]
-    at_values = _nearest(equations, np.array(values))
-    return at_values if at_values.is_closed else _nearest(equations, None)
+    at_values = _nearest(equations, np.array(values), everywhere)
+    return at_values if at_values.is_closed else _nearest(equations, None, everywhere)
 
 
-def _nearest(equations: ConstraintEquations, goal: Array | None) -> AssembledPose:
+def _nearest(equations: ConstraintEquations, goal: Array | None, everywhere: bool) -> AssembledPose:
     best: AssembledPose | None = None
     for start, is_complete in _starts(equations):
         found = corrected(equations, start, goal)
         good = found.is_closed and equations.is_properly_assembled(found.state)
         if best is None or found.residual < best.residual:
             best = found
-        if good or is_complete:
+        if good or is_complete or not everywhere:
             return found
     assert best is not None
     return best

@@ -113,26 +113,31 @@ class Diagnosis:
         return rank_of(self.equations.driving(self.motion.state) @ self.motion.along, self.equations.tolerance.rank)
 
 
-def diagnose(mechanism: Mechanism, poses: Mapping[str, Pose] | None = None) -> Diagnosis:
-    """Diagnose a mechanism at its own dimensions. They are taken to be rounded where exact ones leave no motion."""
-    exact = _diagnosed(mechanism, STRICT, poses)
+def diagnose(mechanism: Mechanism, poses: Mapping[str, Pose] | None = None, everywhere: bool = True) -> Diagnosis:
+    """Diagnose a mechanism at its own dimensions. They are taken to be rounded where exact ones leave no motion.
+
+    Without poses one is looked for: near the drawing, and `everywhere` from random starts too.
+    """
+    exact = _diagnosed(mechanism, STRICT, poses, everywhere)
     if exact.pose.is_closed and (exact.rank == len(exact.rows) or exact.motion.along.shape[1]):
         return exact
     if not exact.pose.is_closed and exact.pose.residual > FAR * ROUNDED.closed:
         # so far open is nothing by rounding
         return exact
-    rounded = _diagnosed(mechanism, ROUNDED, poses)
+    rounded = _diagnosed(mechanism, ROUNDED, poses, everywhere)
     return rounded if rounded.pose.is_closed and rounded.motion.along.shape[1] else exact
 
 
-def _diagnosed(mechanism: Mechanism, tolerance: Tolerance, poses: Mapping[str, Pose] | None) -> Diagnosis:
+def _diagnosed(
+    mechanism: Mechanism, tolerance: Tolerance, poses: Mapping[str, Pose] | None, everywhere: bool
+) -> Diagnosis:
     equations = ConstraintEquations(mechanism, tolerance)
     if poses is None:
-        return Diagnosis(equations, assemble(equations))
+        return Diagnosis(equations, assemble(equations, everywhere))
     return Diagnosis(equations, corrected(equations, equations.state(poses)))
 
 
-def without_redundancy(structure: Structure, decomposed: Decomposed) -> Structure:
+def without_redundancy(structure: Structure, decomposed: Decomposed, everywhere: bool = True) -> Structure:
     """Return the structure without what is redundant. This is where its mechanism moves although it is overconstrained.
 
     The structure itself where nothing moves, or where its equations are too many to tell. `decomposed` takes the
@@ -142,7 +147,7 @@ def without_redundancy(structure: Structure, decomposed: Decomposed) -> Structur
     if 3 * len(mechanism.links) > WIDEST:
         return structure
     with np.errstate(all="ignore"):
-        found = diagnose(mechanism)
+        found = diagnose(mechanism, None, everywhere)
         if not found.pose.is_closed or found.motion.along.shape[1] <= len(structure.passive):
             return structure
         return _chosen(structure, found, decomposed)

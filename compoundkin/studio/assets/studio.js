@@ -224,7 +224,7 @@ export class Studio {
     this.#forget(structure);
     this.canvas.show(structure);
     this.#panels(structure);
-    if (structure.moves) this.#latest("motion", (reply, asked) => this.#moved(reply, asked));
+    if (structure.moves || structure.may_move) this.#latest("motion", (reply, asked) => this.#moved(reply, asked));
     else this.#finish(text);
   }
 
@@ -232,6 +232,8 @@ export class Studio {
     // the structure of a newer text asks again
     if (text !== this.known) return;
     this.#problems([...this.problems, ...(motion.problems ?? [])]);
+    // it moves though it is overconstrained, which near the drawing could not be seen
+    if (motion.structure) { this.canvas.structure = motion.structure; this.#panels(motion.structure); }
     if (motion.poses) {
       this.canvas.motion = motion;
       if (this.goTo !== null && this.goTo !== undefined && this.canvas.isShown(this.goTo)) this.canvas.pose = this.goTo;
