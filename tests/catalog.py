@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import os
 from collections.abc import Callable, Iterable
 from functools import cache, wraps
 from pathlib import Path
@@ -15,6 +14,7 @@ import compoundkin as ck
 from compoundkin.files import load
 from compoundkin.files.shipped_mechanisms import shipped
 from compoundkin.view.report import Report, report
+from tests.support import EVERYTHING
 
 TESTS = Path(__file__).parent
 NAMES = shipped()
@@ -28,7 +28,6 @@ _CHOSEN = """
     geneva-wheel groove-cam-plate hibbeler-quick-return hydraulic-digger oscillating-roller-follower
     rack-driven-double-slider rolling-wheel scotch-yoke six-bar stephenson-iii-floating-driver wedge-press
 """
-EVERYTHING = os.environ.get("COMPOUNDKIN_TESTS") == "all"
 CHOSEN = NAMES if EVERYTHING else tuple(_CHOSEN.split())
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -20,6 +21,7 @@ from compoundkin.base.series import Series
 from compoundkin.model.fields import point_fields
 from compoundkin.model.pairs import Pair
 
+EVERYTHING = os.environ.get("COMPOUNDKIN_TESTS") == "all"
 REFERENCE = Path(__file__).parent / "reference"
 
 # A mechanism file, its driver last.
@@ -36,6 +38,11 @@ points = {{ B = [0, 0], C = [3, 0] }}
 [links.rocker]
 points = {{ D = [0, 0], C = [3, 0] }}
 {DRIVE}"""
+
+
+def examples(count: int) -> int:
+    """How many examples of Hypothesis a test takes: all in `.ci/run`, a third in the short suite."""
+    return count if EVERYTHING else count // 3
 
 
 def reference(name: str, subject: str = "kinematics") -> dict[str, Any]:

@@ -48,6 +48,7 @@ def test_the_page_on_loads_prints_what_it_shows(capsys: pytest.CaptureFixture[st
     assert "mass centre and inertia of a uniform bar A-B\n(15+0j) 30.0\n" in printed
 
 
+@pytest.mark.full
 def test_the_page_on_synthesis_prints_what_it_shows(capsys: pytest.CaptureFixture[str]) -> None:
     page = (DOCS / "synthesis.md").read_text("utf-8")
     names: dict[str, Any] = {}
@@ -125,7 +126,12 @@ def test_the_page_on_compiled_programs_is_true(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "page", ["studies.md", "optimisation.md", "exchange/index.md", "exchange/geogebra.md", "from-a-sketch.md"]
+    "page",
+    [
+        *(pytest.param(page, marks=pytest.mark.full) for page in ("studies.md", "optimisation.md", "from-a-sketch.md")),
+        "exchange/index.md",
+        "exchange/geogebra.md",
+    ],
 )
 def test_the_pages_on_many_designs_and_other_programs_print_what_they_show(
     page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

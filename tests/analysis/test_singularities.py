@@ -15,6 +15,7 @@ from compoundkin.analysis.singularities import singular_poses
 from compoundkin.analysis.singularity import Singularities, Singularity
 from compoundkin.base.linear import zeros_of_forms
 from compoundkin.kinematics.extremes.dead_points import driver_dead_points
+from tests.support import examples
 
 pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses",
                                         "ignore::compoundkin.base.errors.ChangePointWarning")  # fmt: skip
@@ -367,7 +368,7 @@ def test_numbers_of_roots() -> None:
     np.testing.assert_allclose([root for root, _ in roots], [[0.0, 0.0, 1.0]], atol=1e-9)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=examples(20), deadline=None)
 @given(st.integers(0, 10**6), st.integers(3, 5))
 def test_as_many_real_zeros_as_there_can_be(seed: int, n: int) -> None:
     """n - 1 forms of n unknowns have an even number of real zeros, at most 2^(n - 1), and one that is built in."""

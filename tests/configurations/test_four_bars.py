@@ -9,13 +9,14 @@ from hypothesis import strategies as st
 
 import compoundkin as ck
 from tests.configurations.mechanisms import four_bar, slider_crank
+from tests.support import examples
 
 LENGTHS = st.tuples(*[st.floats(1.0, 9.0)] * 4)
 # Nearer to a change point than this a linkage is left out: it would be one to rounding.
 CLEAR = 0.05
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(LENGTHS)
 def test_grashof(lengths: tuple[float, float, float, float]) -> None:
     """Two circuits if and only if the shortest and longest are shorter than the others together; the crank turns fully
@@ -38,7 +39,7 @@ def test_grashof(lengths: tuple[float, float, float, float]) -> None:
     assert limits == pytest.approx(expected, abs=1e-9)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.floats(0.5, 3.0), st.floats(0.5, 6.0), st.floats(-2.0, 2.0))
 def test_slider_cranks(r: float, rod: float, offset: float) -> None:
     """The crank turns fully if and only if the rod is longer than crank and offset together."""

@@ -9,9 +9,8 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.configurations.circuit_search import Circuits
-from tests.catalog import EVERYTHING
 from tests.configurations.mechanisms import random_six_bodies, random_triad
-from tests.support import KINDS_OF_DYAD, Sketch, random_sketch
+from tests.support import EVERYTHING, KINDS_OF_DYAD, Sketch, random_sketch
 
 FINE = 360
 # of class III, where every value is an elimination of its own

@@ -152,7 +152,7 @@ def test_slopes_are_differences(chain: CurveChain) -> None:
     assert by_crank.shape == (1, 32)
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.full)])
 def test_a_planted_four_bar_is_traced(seed: int) -> None:
     target = planted_curve(seed)
     answer = ck.synthesise(ck.tasks.curve(target, links=4))
@@ -266,6 +266,7 @@ def test_growth_is_promised_what_a_step_gives() -> None:
     assert gains.max() > 0.5 * bound[gains.argmax()]
 
 
+@pytest.mark.full
 def test_rounds_lose_nothing_and_grow(monkeypatch: pytest.MonkeyPatch) -> None:
     blot = EGG + 0.5j * np.exp(3j * np.angle(EGG - EGG.mean()))
     matches = coupler_atlas(4, 4_000).near(blot, 16)

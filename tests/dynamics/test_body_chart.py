@@ -75,6 +75,7 @@ def test_inversors_go_through_their_singular_configurations(name: str, until: fl
             assert np.max(np.abs(gap)) < 1e-9 * fall.motion.size
 
 
+@pytest.mark.full
 def test_a_platform_on_three_legs_falls() -> None:
     fall = ck.simulate(heavy("3-rrr"), until=0.15)
     assert fall.times[-1] == 0.15

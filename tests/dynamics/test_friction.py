@@ -543,7 +543,7 @@ def by_newton(own: Any, effect: Any, rng: np.random.Generator) -> int:
     return len({tuple(row) for row in np.round(good, 6).tolist()})
 
 
-@pytest.mark.parametrize("count", [2, 3, 4])
+@pytest.mark.parametrize("count", [2, 3, pytest.param(4, marks=pytest.mark.full)])
 def test_no_solution_of_coulombs_law_is_missed(count: int) -> None:
     """Newton's method from a thousand places each never knows of one more."""
     rng = np.random.default_rng({2: 33, 3: 22, 4: 43}[count])

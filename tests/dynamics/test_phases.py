@@ -522,7 +522,7 @@ def two_followers(which: tuple[int, ...], restitution: float | None) -> ck.Mecha
     return ck.Mechanism("Two followers", *items, units=SI)
 
 
-@pytest.mark.parametrize("restitution", [None, 0.4])
+@pytest.mark.parametrize("restitution", [pytest.param(None, marks=pytest.mark.full), 0.4])
 def test_contacts_that_are_open_together(restitution: float | None) -> None:
     """The first to let go lands while the second still flies; each does what it does alone."""
     runs = {

@@ -555,7 +555,7 @@ def test_a_brake_behind_a_place() -> None:
     assert found.energy.worst < 1e-10
 
 
-@pytest.mark.parametrize("tolerance", [1e-6, 1e-11])
+@pytest.mark.parametrize("tolerance", [1e-6, pytest.param(1e-11, marks=pytest.mark.full)])
 def test_friction_as_a_function_holds_at_rest(tolerance: float) -> None:
     """5 N m against the speed: at rest after 0.3 s and 4.5 rad, until a torque that grows by 10 N m/s exceeds it."""
     pulled = rotor_under(ck.effort("O", lambda w: -5.0 * np.sign(w)))
@@ -709,7 +709,7 @@ def press(*loads: object) -> ck.Mechanism:
     )
 
 
-@pytest.mark.parametrize("load", ["effort", "force"])
+@pytest.mark.parametrize("load", ["effort", pytest.param("force", marks=pytest.mark.full)])
 def test_a_press_that_stalls_stands_still(load: str) -> None:
     """A motor that weakens with its speed, against work on the piston, which is done while it goes forward only."""
     against = (

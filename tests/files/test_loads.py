@@ -16,6 +16,7 @@ from jsonschema import Draft202012Validator
 import compoundkin as ck
 from compoundkin.errors import InvalidInput, InvalidMechanism
 from compoundkin.files import dumps, loads, schema
+from tests.support import examples
 
 VALIDATOR = Draft202012Validator(schema())
 LINKS = (
@@ -83,7 +84,7 @@ def loaded(draw: st.DrawFn) -> ck.Mechanism:
     return ck.Mechanism("Loaded", *LINKS, *words, units={"length": "mm", "mass": "kg", "force": "N"})
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(loaded())
 def test_what_is_written_reads_back(mechanism: ck.Mechanism) -> None:
     toml, text = dumps(mechanism), dumps(mechanism, "json")

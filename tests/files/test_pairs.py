@@ -18,6 +18,7 @@ from compoundkin.model.elements import drive, link
 from compoundkin.model.geometry import deg
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import Pair, belt, gear, rack, roll, roll_around
+from tests.support import examples
 
 SHAPES = ((), (), (), (5,), (2, 1), (2, 5))
 VALIDATOR = Draft202012Validator(schema())
@@ -69,7 +70,7 @@ PAIRS = st.one_of(
 )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(PAIRS, st.sampled_from(["toml", "json"]))
 def test_every_pair_is_read_as_it_was_written(pair: Pair, syntax: Any) -> None:
     links = (

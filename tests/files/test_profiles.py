@@ -21,6 +21,7 @@ from compoundkin.model.laws.motion_programs import Program, ProgramSegment, dwel
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import arc, cam, face, slide, slot
 from compoundkin.model.profiles import Profile, Synthesised, disc, formula, profile
+from tests.support import examples
 
 lengths = st.floats(0.001, 1e6)
 real = st.floats(-1e6, 1e6)
@@ -63,7 +64,7 @@ class Unchecked(Mechanism):
         self.outputs, self.time, self.units = (), None, None
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(made)
 def test_a_made_profile_is_read_as_it_was_written(item: Synthesised) -> None:
     from compoundkin.files.reader import TAGGED
@@ -111,7 +112,7 @@ def mechanisms(draw: st.DrawFn) -> Mechanism:
         raise
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(mechanisms(), st.sampled_from(["toml", "json"]))
 def test_mechanisms_with_contacts_are_read_as_they_were_written(mechanism: Mechanism, syntax: Any) -> None:
     assert loads(dumps(mechanism, syntax), syntax) == mechanism

@@ -20,6 +20,7 @@ from compoundkin.model.geometry import deg, polar
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import slide
 from tests.catalog import FILES, each
+from tests.support import examples
 
 finite = st.floats(-1e6, 1e6)
 radians = st.one_of(
@@ -85,7 +86,7 @@ def mechanisms(draw: st.DrawFn) -> Mechanism:
         raise
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(mechanisms(), st.sampled_from(["toml", "json"]))
 def test_every_mechanism_is_read_as_it_was_written(mechanism: Mechanism, syntax: Any) -> None:
     assert loads(dumps(mechanism, syntax), syntax) == mechanism
@@ -161,6 +162,7 @@ def test_long_arrays_are_wrapped_and_exact() -> None:
     assert loads(dumps(m)) == m
 
 
+@pytest.mark.full
 def test_a_range_beyond_the_readers_limit_is_written_out() -> None:
     m = Mechanism("m", link("frame", A=0), link("c", A=0, B=1), drive("c", values=np.arange(1_000_001.0)))
     assert loads(dumps(m, "json"), "json") == m

@@ -139,7 +139,7 @@ def tongs(stages: int, open_: float = 1.2) -> ck.Mechanism:
 
 
 @pytest.mark.parametrize("stages", [2, 5, 20])
-@pytest.mark.parametrize("poses", [7, 60, 61])
+@pytest.mark.parametrize("poses", [7, *(pytest.param(count, marks=pytest.mark.full) for count in (60, 61))])
 def test_lazy_tongs_pass_their_closed_pose(stages: int, poses: int) -> None:
     """All stages fold there at once, each on pins of the one before; none may fold down behind it."""
     values = np.linspace(1.5, -1.5, poses)

@@ -12,8 +12,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.kinematics import Motion
-from tests.catalog import EVERYTHING
-from tests.support import REFERENCE, reference
+from tests.support import EVERYTHING, REFERENCE, reference
 
 
 def quietly(*args: Any, **words: Any) -> Motion:

@@ -100,7 +100,7 @@ def test_inner_contacts_are_followed_both_ways(way: Callable[[np.ndarray], np.nd
 
 
 @pytest.mark.parametrize(("way", "follower"), [(on_slide, SLIDING), (on_arm, TURNING)])
-@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("side", [1.0, pytest.param(-1.0, marks=pytest.mark.full)])
 def test_an_outer_contact_does_not_leap_to_another_one(
     way: Callable[[np.ndarray], np.ndarray], follower: list[object], side: float
 ) -> None:

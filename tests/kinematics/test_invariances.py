@@ -14,7 +14,7 @@ import compoundkin as ck
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series, constant
 from compoundkin.kinematics import Motion
-from tests.support import KINDS_OF_DYAD, Sketch, differences, drawn_values, random_sketch, well_conditioned
+from tests.support import KINDS_OF_DYAD, Sketch, differences, drawn_values, examples, random_sketch, well_conditioned
 
 SEEDS = st.integers(0, 2**32 - 1)
 ORDER = 3
@@ -55,7 +55,7 @@ def same(one: Motion, other: Motion, change: Callable[[Any, int], Any]) -> None:
             assert close(moved.derivative(k), change(point.derivative(k), k), k)
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(seed=SEEDS)
 def test_the_drawn_pose_is_solved_as_drawn(seed: int) -> None:
     """Every dimension read off the drawing; at the drawn driver value the drawing comes out."""
@@ -181,7 +181,7 @@ def from_link(motion: Motion, link: str, drawn: Pose) -> Callable[[str], Series]
     return point
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(seed=SEEDS, choice=st.integers(0, 100))
 def test_any_link_may_be_the_frame(seed: int, choice: int) -> None:
     """Kinematic inversion: held by another link, the drive where it was, the mechanism has the same relative motion."""

@@ -17,6 +17,7 @@ from compoundkin.kinematics.one_design import motion_of_design
 from tests import catalog
 from tests.oracle.cases import BAD, stored
 from tests.scaled import scaled
+from tests.support import examples
 
 POWERS = (-7, -6, -4, -2, 1, 3, 5, 7)
 # Several groups in a row, near limit positions here and there, magnify the different rounding of other units.
@@ -53,6 +54,7 @@ def _assert_alike(one: ck.results.Motion | str, other: ck.results.Motion | str, 
             np.testing.assert_allclose(found, expected, rtol=SAME, atol=SAME * one.size, err_msg=f"{name}.{rate}")
 
 
+@pytest.mark.full
 @catalog.each(catalog.NAMES)
 def test_motions_of_the_catalog_are_the_same_in_all_units(name: str) -> None:
     number = catalog.NAMES.index(name)
@@ -79,7 +81,7 @@ OF_SIZES = (
 
 
 @pytest.mark.full
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 @given(st.sampled_from(OF_SIZES), st.lists(st.integers(-6, 6), min_size=2, max_size=4))
 def test_designs_of_an_array_are_what_each_is_alone(name: str, powers: list[int]) -> None:
     """However large the others are."""

@@ -374,6 +374,7 @@ def test_a_group_that_cannot_be_assembled_at_all() -> None:
         ck.solve(short, {"FG": 0.0})
 
 
+@pytest.mark.full
 def test_designs_drawn_at_angles_of_their_own_are_followed_like_each_by_itself() -> None:
     """A hundred six-bars with limits of their own; ten took 9 s as all shared each step, or were not solved at all."""
     places = {"A": 0.6 + 0.2j, "B": -0.1 - 2.3j, "C": 0.4 - 2.1j, "D": 0.9 + 0.6j, "E": 0.8 + 0.8j, "F": 0.3 - 0.5j,

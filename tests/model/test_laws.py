@@ -29,6 +29,7 @@ from compoundkin.model.laws.table_laws import TimeTable
 from compoundkin.model.prescribed_motion import place_table
 from compoundkin.model.prescribed_paths import LinePath
 from tests.model.test_programs import MOVING, programs
+from tests.support import examples
 
 # Central differences over nine points, step 0.01: the error is of the eighth power (Abramowitz and Stegun, 25.3).
 STENCIL = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840.0
@@ -179,7 +180,7 @@ def test_a_power_of_zero_has_its_derivatives() -> None:
     ]
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(st.floats(0.01, 2.0), st.floats(-3.0, 3.0))
 def test_differences_are_as_good_as_they_say(scale: float, phase: float) -> None:
     t = np.linspace(0.0, 2.0, 41)

@@ -26,6 +26,7 @@ from compoundkin.model.laws.motion_programs import (
     rise,
     synchronised,
 )
+from tests.support import examples
 
 MOVING = [law for law in LAWS if law != "dwell"]
 
@@ -303,7 +304,7 @@ def test_the_time_is_the_closed_form(name: str) -> None:
 LIMIT = st.floats(0.05, 50.0)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.floats(1e-3, 100.0), LIMIT | st.just(inf), LIMIT, LIMIT | st.just(inf), st.sampled_from((1.0, -1.0)))
 def test_limits_hold_and_one_is_reached_at_every_moment(
     distance: float, speed: float, acceleration: float, jerk: float, sign: float

@@ -119,6 +119,7 @@ def errors(found: Motion) -> Iterator[str]:
             yield f"{found.mechanism.title}: {name} is off by {off:.1e}"
 
 
+@pytest.mark.full
 def test_every_shipped_mechanism_and_kind_is_recorded_and_equals_solve() -> None:
     every = list(motions())
     assert not [error for found in every for error in errors(found)]

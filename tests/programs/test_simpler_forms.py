@@ -11,6 +11,7 @@ from compoundkin.programs.backends import runner_of
 from compoundkin.programs.graph.flat_program import BY_POSE, flat_program
 from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
 from compoundkin.programs.recording.recorded_number import RecordedNumber
+from tests.support import examples
 
 # Neutral numbers, signs and powers of two among others.
 NUMBERS = (0.0, 1.0, -1.0, 2.0, -0.5, 4.0, 0.3, -1.7)
@@ -34,7 +35,7 @@ def arithmetic(rng: np.random.Generator, start: list[Number]) -> list[Number]:
     return known[len(start) + len(NUMBERS) :]
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(st.integers(0, 2**32 - 1))
 def test_what_is_recorded_is_what_is_computed(seed: int) -> None:
     x, y = values = np.random.default_rng(seed).uniform(-1.0, 1.0, (2, 7))

@@ -13,6 +13,7 @@ from compoundkin.model.elements import drive, link
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import slide
 from compoundkin.structure import Structure, decompose
+from tests.support import examples
 
 
 def numbered(structure: Structure) -> list[frozenset[int]]:
@@ -69,7 +70,7 @@ def test_order_and_names_of_links_do_not_matter(reference_plan):
 
 
 # the fixture holds no state
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(60), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(seed=st.integers(0, 10**6), groups=st.integers(1, 12))
 def test_groups_found_are_those_attached(random_plans, seed, groups):
     plan, made = random_plans(random.Random(seed), groups)
@@ -185,7 +186,7 @@ def test_a_chain_of_ternary_links_with_legs_is_one_group(ternary, plan):
     assert (group.class_, group.order) == (3, ternary + 2)
 
 
-@pytest.mark.parametrize(("size", "amount"), [(6, 3), (24, 3), (300, 1)])
+@pytest.mark.parametrize(("size", "amount"), [(6, 3), (24, 3), pytest.param(300, 1, marks=pytest.mark.full)])
 def test_floating_rings_count_as_determined_and_are_not(size, amount, plan):
     graph = nx.circular_ladder_graph(size // 2)
     pins = [[0, size + 1], *([a + 1, b + 1] for a, b in graph.edges)]

@@ -54,7 +54,7 @@ def test_published_mechanisms_are_as_their_sources_compute_them(name: str) -> No
 
 
 # The line takes half a minute: tests/benchmarks/optimisation.py
-@pytest.mark.parametrize("name", ["five", "eighteen", "ellipse"])
+@pytest.mark.parametrize("name", ["five", "eighteen", pytest.param("ellipse", marks=pytest.mark.full)])
 def test_a_few_starts_find_a_mechanism_at_least_as_good(name: str) -> None:
     case = CASES[name]
     goal = ck.goals.trace("P", case.target) if case.steps is None else ck.goals.path("P", case.target)

@@ -121,6 +121,7 @@ def test_a_four_bar_has_the_mechanical_error_of_the_textbooks() -> None:
     assert one.deviation**2 == pytest.approx((halves / 3) ** 2 @ slopes**2 + 2 * (play / transmission) ** 2)
 
 
+@pytest.mark.full
 def test_a_play_is_the_same_on_either_link() -> None:
     """What two links are off at their pin depends on neither, but for the axes that it is told in."""
     six_bar = ck.load("six-bar")

@@ -13,6 +13,7 @@ import compoundkin as ck
 from compoundkin.base.errors import InvalidInput, UnknownName
 from compoundkin.synthesis.chains import assur_group, assur_groups, group_name, group_truss
 from compoundkin.synthesis.composer import DYAD_NAMES, Composer, random_mechanism
+from tests.support import examples
 
 
 def groups(mechanism: ck.Mechanism) -> list[tuple[str, frozenset[str]]]:
@@ -22,7 +23,7 @@ def groups(mechanism: ck.Mechanism) -> list[tuple[str, frozenset[str]]]:
 
 
 @given(st.lists(st.sampled_from([*DYAD_NAMES, "triad", "4-link group 1"]), max_size=8), st.integers(0, 10**6))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 def test_groups_come_back_in_order(kinds, seed):
     composer = Composer("m").drive("crank")
     known, choice = ["frame", "crank"], np.random.default_rng(seed)

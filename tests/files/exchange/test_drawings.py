@@ -50,6 +50,7 @@ def test_random_mechanisms_come_back(seed: int) -> None:
     assert loads(dumps(back)) == back
 
 
+@pytest.mark.full
 def test_the_catalog_comes_back() -> None:
     said, refused = 0, []
     for name in NAMES:

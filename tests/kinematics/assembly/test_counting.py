@@ -58,6 +58,7 @@ def test_graphs_that_are_not_rigid_have_none():
     assert laman_number([(a, b) for a in range(4) for b in range(a)]) == 0
 
 
+@pytest.mark.full
 def test_all_nine_link_trusses():
     """The distribution of their numbers of modes, and every one solved with random dimensions."""
     text = reference("counts_assembly_modes_baranov", "assembly_modes")["how_checked"].split("multiset: ")[1]

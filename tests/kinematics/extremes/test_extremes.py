@@ -15,8 +15,9 @@ from compoundkin.analysis.characteristics.outputs import chosen_outputs
 from compoundkin.base.arrays import Number
 from compoundkin.kinematics.extremes import between, extremes, zeros
 from compoundkin.kinematics.quantities import quantity
-from tests.catalog import NAMES, each, mechanism
+from tests.catalog import CHOSEN, each, mechanism
 from tests.catalog import motion as solved
+from tests.support import examples
 
 CRANK, ROD, OFFSET = 40.0, 120.0, -20.0
 # The greatest velocity, acceleration and jerk of the standard laws, times lift / span^k. Source: R. L. Norton, Cam
@@ -61,7 +62,7 @@ PARTS = {"slider-crank-offset": 72, "crank-rocker": 90, "six-bar": 120}
 
 
 @pytest.mark.full
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(st.sampled_from(list(SMOOTH)), st.floats(-1.0, 1.0), st.integers(-8, -1))
 @example("slider-crank-offset", 0.3, -2)
 @example("slider-crank-offset", -0.3, -2)
@@ -140,7 +141,7 @@ def shown(motion: ck.results.Motion) -> Iterator[str]:
 ONE_WAY = {"jaw-crusher-loaded", "shaper-cutting-force"}
 
 
-@each(NAMES)
+@each(CHOSEN)
 def test_extremes_do_not_depend_on_the_poses(name: str) -> None:
     """At the file's own step, and with nine poses between every two: to 1e-6 of the range."""
     coarse = solved(name)

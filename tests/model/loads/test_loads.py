@@ -17,6 +17,7 @@ import compoundkin as ck
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.errors import InvalidInput, InvalidMechanism, LikelySlip
 from compoundkin.model.loads.mass import uniform_body
+from tests.support import examples
 
 SI = {"length": "m", "mass": "kg", "force": "N"}
 CRANK = np.linspace(0.0, 2.0 * np.pi, 721)
@@ -282,7 +283,7 @@ def test_points_in_line_are_a_bar() -> None:
 coordinates = st.integers(-20, 20)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.lists(st.builds(complex, coordinates, coordinates), min_size=3, max_size=7), st.randoms())
 def test_the_plate_is_that_of_its_hull(points: list[complex], order: object) -> None:
     """Against scipy's hull cut into triangles from its first point; in any order; over designs at once."""

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import compoundkin as ck
 from compoundkin.kinematics.groups.general import GeneralSolver
 from compoundkin.kinematics.one_design import motion_of_design
-from tests.support import reference
+from tests.support import examples, reference
 
 # Angles are sums and products of few terms: rounding of the largest of them.
 EXACT = 1e-13
@@ -65,7 +65,7 @@ def willis(sun: int, planet: int, known: dict[str, Fraction]) -> dict[str, Fract
     return w
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 @given(teeth, teeth, st.permutations(("sun", "ring", "arm")), st.integers(-9, 9), st.integers(1, 9))
 def test_planetary_train_by_willis(sun: int, planet: int, links: list[str], held: int, speed: int) -> None:
     """Any two of sun, ring and arm driven, the one held still or turning: rates and angles over many turns."""
@@ -167,7 +167,7 @@ def test_fergusons_paradox() -> None:
         )
 
 
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=examples(30))
 @given(teeth, teeth, teeth, teeth)
 def test_reverted_compound_train(fixed: int, first: int, second: int, out: int) -> None:
     """The frame's wheel, two planets on one link and the wheel out: out / arm = 1 - e, and 0 or a lock for e = 1."""
@@ -204,7 +204,7 @@ def differential() -> ck.Mechanism:
 
 
 @given(st.floats(-12, 12), st.floats(-12, 12), st.floats(-9, 9), st.floats(-9, 9))
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=examples(25))
 def test_the_case_of_a_differential_is_the_mean(a: float, b: float, one: float, two: float) -> None:
     motion = ck.solve(differential(), {"left": a, "right": b}, speed={"left": one, "right": two})
     assert float(motion.links["case"].angle) == pytest.approx((a + b) / 2, abs=1e-12)
@@ -832,7 +832,7 @@ def test_designs_of_which_none_fits(pair: Any) -> None:
         two_wheels(pair)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(st.lists(st.sampled_from([9.0, 10.0, 10.0001, 10.001, 30.0]), min_size=2, max_size=5), st.integers(0, 3))
 def test_designs_fit_that_can_be_built_alone(first: list[float], kind: int) -> None:
     """Against each built by itself, and the reason against the text with which it is refused."""

@@ -23,8 +23,8 @@ from compoundkin.model.elements import Drive
 from compoundkin.model.pairs import KINDS
 from compoundkin.model.pairs.contract import Drivable, Pair, Replaceable, TurnCounting
 from compoundkin.view.sketch.picture_kinds import KINDS as PICTURES
-from tests.catalog import EVERYTHING
 from tests.model.pairs.minimal import Guided, Level, register, with_guided, with_level
+from tests.support import EVERYTHING
 
 MECHANISMS = {"held once": with_level, "held twice": with_guided}
 

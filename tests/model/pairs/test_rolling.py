@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import compoundkin as ck
+from tests.support import examples
 
 SIZES = st.floats(0.3, 5.0)
 ANGLES = st.floats(-3.0, 3.0)
@@ -36,7 +37,7 @@ def agree(motion: ck.results.Motion, letter: str, expected: list[Any]) -> None:
         assert np.max(np.abs(found - value)) < 1e-12 * max(1.0, float(np.max(np.abs(value))))
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 @given(SIZES, st.floats(0.0, 8.0), ANGLES, ANGLES, st.sampled_from([1, -1]))
 def test_cycloids_and_trochoids(radius: float, arm: float, slope: float, phase: float, side: int) -> None:
     """c = e s + i side r e, angle = (phase - s) / (side r): the tracing point is c + arm exp(i angle)."""
@@ -76,7 +77,7 @@ def test_the_cycloid_of_a_rim_point() -> None:
     assert abs(abs(v) ** 3 / abs((np.conj(v) * a).imag) - 6.1283555449518) < 1e-10
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 @given(SIZES, SIZES, st.floats(0.0, 8.0), ANGLES, st.booleans())
 def test_epicycloids_and_hypocycloids(circle: float, radius: float, arm: float, phase: float, inside: bool) -> None:
     """c = (R +- r) exp(i q), angle = (1 +- R / r) q + phase, over several turns."""

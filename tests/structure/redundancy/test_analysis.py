@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import compoundkin as ck
 from compoundkin.structure.redundancy import mobility_analysis
 from tests.structure.redundancy.special import bars, cranks, guides, wedge
-from tests.support import KINDS_OF_DYAD, random_sketch, reference
+from tests.support import KINDS_OF_DYAD, examples, random_sketch, reference
 
 CASES = {
     "parallelogram_extra_crank": cranks(),
@@ -119,7 +119,7 @@ def test_rollers_are_counted_once():
     assert (found.gruebler, found.at_pose, found.passive) == (1, 1, ())
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(st.integers(0, 10_000), st.lists(st.sampled_from(KINDS_OF_DYAD), min_size=1, max_size=4))
 def test_random_mechanisms_agree_in_all_numbers(seed, kinds):
     mechanism = random_sketch(np.random.default_rng(seed), kinds).mechanism()

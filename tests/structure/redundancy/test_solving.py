@@ -11,6 +11,7 @@ import compoundkin as ck
 from compoundkin.structure import decompose
 from compoundkin.structure.decomposition import decomposed
 from tests.structure.redundancy.special import bars, cranks, guides, wedge, with_parallel_crank
+from tests.support import examples
 
 MOBILE = {
     "three cranks": cranks(ck.drive("crank")),
@@ -131,7 +132,7 @@ BASE = ck.Mechanism(
 )
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=examples(20), deadline=None)
 @given(st.floats(-5, 5), st.floats(-5, 5))
 def test_a_further_parallel_crank_changes_nothing(x, y):
     place = complex(x, y)

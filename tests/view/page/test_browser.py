@@ -159,7 +159,7 @@ WATCHED = "addEventListener('copy', () => { window.taken = document.activeElemen
 LACKING = f"Object.defineProperty(navigator, 'clipboard', {{ value: undefined }}); {WATCHED}"
 
 
-@pytest.mark.parametrize("script", ["", LACKING], ids=["clipboard", "none"])
+@pytest.mark.parametrize("script", ["", pytest.param(LACKING, marks=pytest.mark.full)], ids=["clipboard", "none"])
 def test_a_table_is_copied_with_every_digit(made: Made, opened: Open, script: str) -> None:
     permitted = {} if script else {"permissions": ["clipboard-read", "clipboard-write"]}
     one = opened(made(SIX_BAR), script=script, **permitted)
@@ -183,6 +183,7 @@ def colour(one: Any) -> str:
     return str(one.value("getComputedStyle(document.documentElement).backgroundColor"))
 
 
+@pytest.mark.full
 def test_light_and_dark_follow_the_system_or_the_switch_and_stay(made: Made, opened: Open) -> None:
     one = opened(made(SIX_BAR), color_scheme="light")
     light = colour(one)
@@ -308,7 +309,7 @@ def test_the_keyboard_comes_to_the_report_first_and_headings_go_down_by_one(made
 @pytest.mark.parametrize(
     ("size", "scheme"),
     [
-        pytest.param(DESK, "light", id="desk-light"),
+        pytest.param(DESK, "light", id="desk-light", marks=pytest.mark.full),
         pytest.param(PHONE, "dark", id="phone-dark"),
         pytest.param(DESK, "dark", id="desk-dark", marks=pytest.mark.full),
         pytest.param(PHONE, "light", id="phone-light", marks=pytest.mark.full),

@@ -166,6 +166,7 @@ def test_a_mechanism_whose_point_is_led_has_a_page() -> None:
     assert "ck-motion" in ck.page(catalog.motion("five-bar-led")).html
 
 
+@pytest.mark.full
 def test_the_catalog_can_be_viewed() -> None:
     """Every sixth mechanism: the live pages of all are made with the site."""
     for name in shipped()[::6]:

@@ -201,6 +201,7 @@ def test_a_four_bar_is_drawn_moved_and_saved(window: Any) -> None:
     assert seen.complaints == []
 
 
+@pytest.mark.full
 def test_a_slider_crank_is_drawn(window: Any) -> None:
     seen = window()
     seen.drag((-200, 0), (-150, -60))
@@ -266,6 +267,7 @@ BARS_FROM_LETTERS = """(() => {
 })()"""
 
 
+@pytest.mark.full
 def test_the_six_bar_of_the_textbook_is_drawn(window: Any) -> None:
     seen = window()
     six_bar(seen)
@@ -361,6 +363,7 @@ def digger_arm(seen: Window) -> None:
         seen.press(((a[0] + b[0] - wide) / 2, (a[1] + b[1] - high) / 2), "d")
 
 
+@pytest.mark.full
 def test_a_digger_arm_with_cylinders_is_drawn(window: Any) -> None:
     """The ends of the cylinders become points of boom, stick and frame; each is driven by its length."""
     seen = window()
@@ -620,7 +623,7 @@ def test_by_the_keyboard_alone(window: Any) -> None:
     assert seen.complaints == []
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("scheme", ["light", pytest.param("dark", marks=pytest.mark.full)])
 def test_it_is_narrow_enough_and_accessible(window: Any, scheme: str) -> None:
     """A finger draws a bar, opens the menu and moves the view; the lines of a text from Windows keep their ends."""
     axe = pytest.importorskip("axe_playwright_python.sync_playwright")
@@ -706,7 +709,7 @@ def undone(seen: Window) -> str:
     return seen.text
 
 
-@pytest.mark.parametrize("seed", [40, *(pytest.param(seed, marks=pytest.mark.full) for seed in range(41, 43))])
+@pytest.mark.parametrize("seed", [pytest.param(seed, marks=pytest.mark.full) for seed in range(40, 43)])
 def test_random_gestures_never_raise_and_are_undone_byte_for_byte(window: Any, seed: int) -> None:
     """Forty in a window; what many more make holds so many groups that each is solved for seconds."""
     seen = window()

@@ -270,6 +270,7 @@ def test_names_grow_on_a_small_screen(made: Any, opened: Any) -> None:
     assert view.value("document.scrollingElement.scrollWidth") <= 360
 
 
+@pytest.mark.full
 def test_a_driver_that_goes_back_and_forth_is_plotted_over_poses(opened: Callable[..., Any], tmp_path: Path) -> None:
     there = np.concatenate([np.arange(0, 91, 10), np.arange(80, -1, -10)])
     page(ck.solve(load("six-bar"), {"crank": ck.deg(there)})).save(tmp_path / "back.html")
@@ -345,7 +346,7 @@ def assert_letters_are_near(view: Any) -> None:
     assert wrong == []
 
 
-@pytest.mark.parametrize("name", ["jaw-crusher", "hydraulic-digger"])
+@pytest.mark.parametrize("name", ["jaw-crusher", pytest.param("hydraulic-digger", marks=pytest.mark.full)])
 def test_no_letter_is_nearer_to_another_point_than_to_its_own(name: str, made: Any, opened: Any) -> None:
     """On a desk and a phone."""
     for size in (DESK, PHONE):

@@ -19,6 +19,7 @@ from compoundkin.view.sketch.shapes import CircleShape, Polyline, ShapeGroup, Te
 from compoundkin.view.sketch.sketch_style import style_of
 from compoundkin.view.sketch.structure_pictures import MOST, loop_polygon
 from tests import catalog
+from tests.support import examples
 
 NAMES = ["six-bar", "stephenson-iii", "class-iii-six-bar", "jansen-leg", "planetary-train", "crank-shaper"]
 
@@ -51,7 +52,7 @@ def test_the_picture_is_well_formed_and_the_same_every_time(name: str) -> None:
     assert ck.draw(load(name), kind="loops").svg == source
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=examples(20), deadline=None)
 @given(st.floats(0.0, 6.2))
 def test_the_corners_are_the_solved_points_and_the_vectors_the_links(angle: float) -> None:
     """In order the points that neighbouring links share; each vector as long as its link, whose lengths are known."""
