@@ -30,6 +30,7 @@ from tests.view.page.test_studio import (
     served_studio,
     six_bar,
 )
+from tests.view.page.test_studio_pen import egg, sketched
 
 FOLDER = Path(__file__).parents[1] / "docs" / "figures"
 SIZE = {"width": 1400, "height": 800}
@@ -183,6 +184,19 @@ def photograph() -> None:
         written("studio-photograph", seen)
 
 
+def pen() -> None:
+    """An egg drawn by hand, and the linkages that trace it; the first of four links is the document."""
+    with window("Curve") as seen:
+        seen.view.keyboard.press("i")
+        sketched(seen, [(1.15 * x - 40, -1.15 * y - 60) for x, y in egg(70)])
+        seen.until("studio.pen.words.textContent.startsWith('Searched')", 120.0)
+        seen.view.locator("#pen-list [data-links='4']").first.click()
+        rested(seen)
+        seen.until("studio.structure.moves && studio.motion?.poses === 361")
+        seen.value("() => { studio.pose(40); studio.canvas.fit(); }")
+        written("studio-pen", seen)
+
+
 def textbook() -> None:
     with window("Six-bar") as seen:
         six_bar(seen)
@@ -275,7 +289,7 @@ def film() -> None:
 
 
 PICTURES: dict[str, Callable[[], None]] = {
-    one.__name__: one for one in (drawing, shaper, digger, gears_and_cam, photograph, textbook, film)
+    one.__name__: one for one in (drawing, shaper, digger, gears_and_cam, photograph, pen, textbook, film)
 }
 
 if __name__ == "__main__":

@@ -435,11 +435,11 @@ def mean_distance(curve: Number, target: Number, closed: bool = True) -> float:
     """
     one, two = (resampled(each[None], MEASURED, closed)[0] for each in (curve, target))
     radius = np.sqrt(np.mean(np.abs(two - two.mean()) ** 2))
-    there, back = _nearest_distances(one, two, closed), _nearest_distances(two, one, closed)
+    there, back = nearest_distances(one, two, closed), nearest_distances(two, one, closed)
     return float((there.mean() + back.mean()) / radius)
 
 
-def _nearest_distances(places: Number, curve: Number, closed: bool) -> Number:
+def nearest_distances(places: Number, curve: Number, closed: bool) -> Number:
     """Return the distances of places (n,) from a curve, by the lines next to its nearest place."""
     from scipy.spatial import cKDTree
 

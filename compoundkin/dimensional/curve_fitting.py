@@ -199,15 +199,18 @@ def _unlike(one: Linkage, other: Linkage) -> bool:
     return not np.allclose(one.lengths, other.lengths, rtol=ALIKE)
 
 
-def fitted(matches: Sequence[AtlasMatch], curve: Number, closed: bool = True, links: int = 6) -> list[FittedCurve]:
+def fitted(
+    matches: Sequence[AtlasMatch], curve: Number, closed: bool = True, links: int = 6, rounds: int | None = None
+) -> list[FittedCurve]:
     """Return the best designs of some matches refined to a curve (places,), the nearest first.
 
-    Where they remain far, those of fewer links than `links` grow by dyads, and the best are moved and refined again.
+    Where they remain far, those of fewer links than `links` grow by dyads, and the best are moved and refined again, in
+    so many `rounds`; in zero for whoever waits for a first answer.
     """
     target = CurveTarget.of(curve, closed)
     found = _best(_refined(_begun(matches, target)))
     rng = np.random.default_rng(0)
-    for _ in range(ROUNDS):
+    for _ in range(ROUNDS if rounds is None else rounds):
         if not found or min(part.cost.min() for part in found) < NEAR:
             break
         found = _best([*found, *_refined(_moved(found, rng), 0), *_refined(_grown(found, links, rng), 0)])

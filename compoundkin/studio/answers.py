@@ -39,6 +39,7 @@ from compoundkin.model.pairs.cylinder import Stroke
 from compoundkin.model.pairs.symbols import Groove, Outline, Wheel
 from compoundkin.structure import Fault, Structure, decompose
 from compoundkin.structure.decomposition import decompose_near_drawing
+from compoundkin.studio.drawn_curves import OF_CURVES
 from compoundkin.studio.edited_document import Document, Placement, written_place
 from compoundkin.studio.edits import edited
 from compoundkin.studio.findings import (
@@ -760,11 +761,15 @@ def _finding(document: str, question: Mapping[str, Any]) -> Reply:
 
 def _file(document: str, question: Mapping[str, Any]) -> Reply:
     """Reply what is asked of no document."""
-    return OF_FILES[question["ask"]](question)
+    return OF_NOTHING_DRAWN[question["ask"]](question)
+
+
+# Questions for which no document is needed.
+OF_NOTHING_DRAWN = {**OF_FILES, **OF_CURVES}
 
 
 QUESTIONS = {
     **{"structure": _structure, "motion": _motion, "edit": _edit, "offers": _offers},
     **dict.fromkeys(OF_MECHANISMS, _finding),
-    **dict.fromkeys(OF_FILES, _file),
+    **dict.fromkeys(OF_NOTHING_DRAWN, _file),
 }

@@ -25,15 +25,17 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from compoundkin.base.errors import InvalidInput
+from compoundkin.studio.drawn_curves import AT_ONCE
 
 HOST = "127.0.0.1"
 # A message may have so many bytes; a socket so many questions that wait; there may be so many windows.
 MOST_BYTES, MOST_WAITING, MOST_WINDOWS = 500_000, 24, 8
 # Seconds for a reply, for a process to begin, for the first message of a socket; memory of such a process, in bytes.
 SECONDS, BEGINNING, GREETING, MEMORY = 10.0, 60.0, 15.0, 4 << 30
-# Reports, plots and pages may take longer; what is no motion and not quick has a process of its own.
+# Reports, plots and pages may take longer; what is no motion and not quick has a process of its own. So has the first
+# answer to a curve, which keeps an atlas.
 LONG = 60.0
-REPORTS, QUICK = "reports", ("structure", "edit", "offers")
+REPORTS, CURVES, QUICK = "reports", "curves", ("structure", "edit", "offers")
 # What a process says when it has begun.
 READY = b"ready\n"
 # Closed for a reason that is the other side's.
@@ -181,14 +183,14 @@ class StudioServer:
     host: str
     # what changes the text or says what follows from it never waits for a motion, and neither of them for a report
     answerers: Mapping[str, AnsweringProcess] = field(
-        default_factory=lambda: {name: AnsweringProcess() for name in ("motion", "", REPORTS)}
+        default_factory=lambda: {name: AnsweringProcess() for name in ("motion", "", REPORTS, CURVES)}
     )
     windows: int = 0
 
     def start(self) -> None:
-        """Start the processes that each window needs; that of reports starts when it is first asked."""
+        """Start the processes that each window needs; those of reports and curves start when they are first asked."""
         for name, one in self.answerers.items():
-            if name != REPORTS:
+            if name not in (REPORTS, CURVES):
                 one.start()
 
     def end(self) -> None:
@@ -299,16 +301,22 @@ class StudioServer:
         if message.sort == "save":
             reply = await asyncio.to_thread(self._save, message.document, message.mark)
         else:
-            name = message.sort if message.sort in self.answerers else "" if message.sort in QUICK else REPORTS
+            name = self._process(message.sort)
             async with locks[name]:
                 if message.sort != "edit" and newest[message.sort] != message.number:
                     reply = {"is_dropped": True}
                 else:
-                    seconds = LONG if name == REPORTS else SECONDS
+                    seconds = LONG if name in (REPORTS, CURVES) else SECONDS
                     ask = self.answerers[name].ask
                     reply = await asyncio.to_thread(ask, message.document, message.question, seconds)
         with suppress(RuntimeError):  # the window has gone
             await wire.send_json({**reply, "id": message.number})
+
+    def _process(self, sort: str) -> str:
+        """Return which process replies to a sort of question."""
+        if sort in self.answerers or sort in QUICK:
+            return sort if sort in self.answerers else ""
+        return CURVES if sort in AT_ONCE else REPORTS
 
     def _save(self, document: str, mark: str) -> dict[str, Any]:
         """Write the file, unless it is another than the window last saw: both are then offered."""

@@ -4,6 +4,7 @@ const TOOLS = {
   draw: "Drag: a bar. Onto a point or a bar: joined there. With Shift: move points. Right click or long press: what can be done",
   move: "Drag a point or a bar; from the ground: a box chooses several. Right button or two fingers: the view. Wheel: nearer",
   cylinder: "Drag: a cylinder, from one bar or the ground to another bar",
+  pen: "Draw a curve: closed where it ends at its beginning, else a stroke. Linkages that trace it come beside the canvas",
   photo: "Drag the photograph. V or Escape: done",
   measure: "Click a point of the photograph whose distance to another one you know",
 };
@@ -67,7 +68,7 @@ export class Gestures {
     const { canvas, tool } = this, isMoving = (tool === "move") !== (event.shiftKey && tool !== "cylinder");
     const isNear = (grip) => grip && Math.hypot(at[0] - grip.at[0], at[1] - grip.at[1]) <= GRIP;
     if (event.button === 1 || event.button === 2) return { does: "pan" };
-    if (tool === "measure" || tool === "photo") return { does: tool };
+    if (tool === "measure" || tool === "photo" || tool === "pen") return { does: tool };
     if (isNear(canvas.drawn)) return { does: "lengthen", ...canvas.drawn };
     if (isNear(canvas.turned)) return { does: "turn", ...canvas.turned };
     if (under?.point && (event.ctrlKey || event.metaKey)) return { does: "lengthen", ...this.#lengthened(under.point) };
@@ -106,6 +107,7 @@ export class Gestures {
     if (held.does === "pinch") { this.#pinch(before); return; }
     if (!held.isDragged && Math.hypot(at[0] - held.start[0], at[1] - held.start[1]) < FAR) return;
     clearTimeout(held.timer);
+    if (held.does === "pen" && !held.isDragged) this.studio.pen.begin(held.start);
     held.isDragged = true;
     held.isFree = held.does !== "lengthen" && (event.ctrlKey || event.metaKey);
     this.#drag(at);
@@ -123,6 +125,7 @@ export class Gestures {
     else if (held.does === "lengthen") this.#grow(at);
     else if (held.does === "turn") this.#turn(at);
     else if (held.does === "box") canvas.sketch({ box: [held.start, at] });
+    else if (held.does === "pen") this.studio.pen.follow(at);
   }
 
   #pinch(before) {
@@ -281,10 +284,14 @@ export class Gestures {
       canvas.picked = new Set(canvas.allLetters.filter((one) => { const [x, y] = canvas.at(one) ?? []; return x >= left && x <= right && y >= top && y <= low; }));
       canvas.chosen = null;
     } else if (held.does === "photo") this.#remember();
+    else if (held.does === "pen") studio.pen.end();
   }
 
   stop() {
     clearTimeout(this.held?.timer);
+    // a curve that is not drawn to its end is none
+    const { pen } = this.studio;
+    if (this.held?.does === "pen" && pen.places.length && !pen.isDone) pen.clear();
     this.held = null;
     this.typed = "";
     this.canvas.moved = {};
@@ -326,6 +333,7 @@ export class Gestures {
     const { over, chosen, picked } = this.canvas, it = over ?? chosen, isMoving = this.tool === "move";
     const draws = this.tool === "cylinder" ? "drag for a cylinder" : "drag for a bar";
     let what = TOOLS[this.tool];
+    if (this.tool === "pen") { this.studio.say(what); return; }
     if (this.tool === "measure" || this.tool === "photo") { this.studio.say(this.first ? "Click the other point" : what); return; }
     if (picked.size && !over) what = `${[...picked].join(", ")} chosen: drag one of them, arrows move them, Delete deletes them`;
     else if (it?.point) what = `${it.point}: ${isMoving ? "drag to move it, onto a point to join, with Alt to take a bar off" : draws}, with Ctrl to lengthen one bar alone; G ground, D driver, S slide, Delete; right click: all`;

@@ -3,12 +3,13 @@ import { Canvas } from "./canvas.js";
 import { Dimensions } from "./dimensions.js";
 import { element, parts } from "./elements.js";
 import { Gestures } from "./gestures.js";
+import { Pen } from "./pen.js";
 import { Results } from "./results.js";
 
 const MOST_KEPT = 200, TYPING = 900, PAUSE = 250;
 // Keys for what is under the pointer or chosen, and for tools.
 const ACTS = { g: "ground", d: "driver", s: "slide", p: "point", w: "weld", r: "gear", k: "cam", t: "trace", l: "lock", delete: "delete", backspace: "delete" };
-const TOOLS = { b: "draw", v: "move", c: "cylinder" };
+const TOOLS = { b: "draw", v: "move", c: "cylinder", i: "pen" };
 
 export class Studio {
   // `root` is the element of the window; `kept` is the history of before and keeps what it is given. A window that is
@@ -28,6 +29,7 @@ export class Studio {
     this.isFitted = false;
     this.before = kept.before ?? null;
     this.results = new Results(root, this);
+    this.pen = new Pen(root, this);
     this.dimensions = new Dimensions(root, this);
     this.#listen();
     this.wire = wire({ opened: (reply) => this.#open(reply), lost: (wasOpen) => this.#lost(wasOpen) });
@@ -40,6 +42,7 @@ export class Studio {
     this.gestures.closeMenu();
     this.ended.abort();
     this.results.unmount();
+    this.pen.unmount();
     this.dimensions.unmount();
     this.canvas.unmount();
     this.wire.end();
@@ -59,7 +62,8 @@ export class Studio {
     const isAgain = this.file !== undefined;
     this.part("save").disabled = false;
     // a notebook has what is drawn at each step
-    this.part("save").hidden = this.part("state").hidden = Boolean(isKept);
+    this.isKept = Boolean(isKept);
+    this.part("save").hidden = this.part("state").hidden = this.isKept;
     if (isGiven) { this.put(text); return; }
     if (isAgain) {
       // the server has come back: what is here goes on, and what is on disk is looked at when it is saved
@@ -391,6 +395,7 @@ export class Studio {
 
   choose(tool) {
     this.gestures.choose(tool);
+    if (tool === "pen") this.pen.take();
     for (const one of Object.values(TOOLS)) this.part(`tool-${one}`).setAttribute("aria-pressed", String(one === tool));
   }
 
