@@ -204,6 +204,7 @@ def test_a_sampled_turn_without_its_end_is_closed() -> None:
     assert not ck.tasks.curve(EGG[:-1], closed=False).closed
 
 
+@pytest.mark.full
 def test_answers_are_of_several_kinds(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(curve_fitting, "GIVEN", 6)
     titles = [one.title for one in ck.synthesise(ck.tasks.curve(EGG)).candidates]

@@ -459,6 +459,7 @@ def test_how_many_solutions_a_pin_has() -> None:
     counted(influence, np.ones((1, 2000)), np.sum(np.array(roots) >= 0.0, axis=0))
 
 
+@pytest.mark.full
 def test_how_many_solutions_contacts_have() -> None:
     """Forces in three contacts keep their signs: eight linear systems, whose solutions are right or not."""
     rng, size = np.random.default_rng(1), 2000

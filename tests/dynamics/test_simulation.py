@@ -573,6 +573,7 @@ def test_friction_as_a_function_holds_at_rest(tolerance: float) -> None:
     assert found.motion.drives["rotor"].value[-1] == pytest.approx(25.0 / 6.0, rel=1e-6)
 
 
+@pytest.mark.full
 def test_friction_and_a_spring_come_to_rest() -> None:
     """Each half swing is 2 x 0.5 rad shorter; at rest where the spring pulls by less than friction."""
     stiffness, friction = 10.0, 5.0
@@ -912,8 +913,11 @@ def rocker_under(*loads: object) -> ck.Mechanism:
 
 
 @pytest.mark.parametrize("load", [
-    lambda name: ck.motor(name, stall=4.0, no_load=40.0), lambda name: ck.damper(pair=name, rate=0.02),
-    lambda name: ck.stop(name, high=4.0, stiffness=1e3), lambda name: ck.effort(name, lambda q, w: -0.1 * w - q),
+    lambda name: ck.motor(name, stall=4.0, no_load=40.0),
+    *(pytest.param(load, marks=pytest.mark.full) for load in (
+        lambda name: ck.damper(pair=name, rate=0.02), lambda name: ck.stop(name, high=4.0, stiffness=1e3),
+        lambda name: ck.effort(name, lambda q, w: -0.1 * w - q),
+    )),
 ])  # fmt: skip
 def test_loads_of_a_driver_follow_it_where_another_pair_takes_its_place(load: Any) -> None:
     """They named a driver that was no more, so that the coordinates of all links had to take over."""

@@ -138,6 +138,7 @@ def test_where_signs_may_change_nothing_is_certain() -> None:
     assert not found["certain"]
 
 
+@pytest.mark.full
 def test_a_slip_is_told() -> None:
     function = path().jax()
     for call in ({"values": {"cranck": 0.0}}, {"values": 0.0, "dimensions": {"plate.D": 1.0}}):

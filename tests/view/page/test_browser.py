@@ -65,6 +65,7 @@ def test_it_is_quiet_asks_for_nothing_and_fits(made: Made, opened: Open, name: s
     fits(opened(made(name)))
 
 
+@pytest.mark.full
 def test_pages_without_a_motion_are_quiet_and_fit_too(opened: Open, others: dict[str, Path]) -> None:
     for path in others.values():
         fits(opened(path))

@@ -222,6 +222,7 @@ def test_the_keyboard_alone_changes_a_dimension(made: Any, opened: Any) -> None:
     assert view.complaints == []
 
 
+@pytest.mark.full
 def test_a_finger_drags_points_and_a_crank(made: Any, opened: Any) -> None:
     view = opened(made("six-bar"), (360, 740), has_touch=True, is_mobile=True)
     view.locator(".handles").scroll_into_view_if_needed()

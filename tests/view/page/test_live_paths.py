@@ -168,6 +168,7 @@ def live(motion: Motion) -> dict[str, Any]:
     return {"poses": poses, "start": 0, "live": found}
 
 
+@pytest.mark.full
 def test_updates_keep_up_with_the_hand(browser: Any) -> None:
     six_bar = ck.solve(load("six-bar"), {"crank": ck.deg(range(361))}, order=2)
     large = ck.chains.random_mechanism(groups=20, seed=1)

@@ -520,6 +520,7 @@ PHOTO = """async () => {
 }"""
 
 
+@pytest.mark.full
 def test_a_photograph_beneath_is_scaled_kept_and_sent_nowhere(window: Any) -> None:
     seen = window()
     sent: list[str] = []

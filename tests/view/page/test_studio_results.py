@@ -43,6 +43,7 @@ def test_results_are_one_click_away(window: Any) -> None:
     assert seen.complaints == []
 
 
+@pytest.mark.full
 def test_files_are_opened_and_exported(window: Any, tmp_path: Path) -> None:
     seen = window()
     view = seen.view

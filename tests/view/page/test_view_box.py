@@ -48,6 +48,7 @@ def test_the_view_is_enlarged_moved_and_fitted_again(made: Any, opened: Any) -> 
     assert view.complaints == []
 
 
+@pytest.mark.full
 def test_text_in_the_sketch_is_legible_at_any_width(made: Any, opened: Any) -> None:
     view, player = opened(made("six-bar"), size=(360, 740)), "compoundkin.players[0]"
     for width in (360, 768, 1440):

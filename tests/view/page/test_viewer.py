@@ -105,6 +105,7 @@ def test_it_plays_and_stops(made: Any, opened: Any) -> None:
     assert play.get_attribute("aria-pressed") == "false"
 
 
+@pytest.mark.full
 def test_a_motion_that_does_not_close_goes_there_and_back(opened: Any, tmp_path: Path) -> None:
     motion = ck.solve(load("six-bar"), {"crank": ck.deg(range(0, 91, 10))})
     page(motion).save(tmp_path / "part.html")
@@ -263,6 +264,7 @@ def test_poses_that_cannot_be_assembled_are_said(opened: Callable[..., Any], tmp
     assert view.complaints == []
 
 
+@pytest.mark.full
 def test_names_grow_on_a_small_screen(made: Any, opened: Any) -> None:
     view = opened(made("six-bar"), size=(360, 740))
     tall = view.value("document.querySelector('.name text').getBoundingClientRect().height")
