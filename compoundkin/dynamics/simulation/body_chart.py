@@ -404,12 +404,12 @@ class BodyChart:
         found[FRAME] = FIXED
         return found
 
-    def _put_slides(self, at: int, found: _SlideRows, matrix: Number, off: Number, second: Number) -> int:
+    def _put_slides(self, at: int, found: _SlideRows, whole: Equations) -> int:
         """Write the rows of all slides from a row on: distances, then angles; return the row behind them."""
-        slides, k = self.slides, len(self.slides.own)
+        slides, k, matrix = self.slides, len(self.slides.own), whole.jacobian
         rows, angles = np.arange(at, at + k), np.arange(at + k, at + 2 * k)
-        off[rows], off[angles] = found.open
-        second[rows], second[angles] = found.second
+        whole.open[rows], whole.open[angles] = found.open
+        whole.second[rows], whole.second[angles] = found.second
         e = found.direction
         matrix[rows, 3 * slides.first], matrix[rows, 3 * slides.first + 1] = e.imag, -e.real
         matrix[rows, 3 * slides.second], matrix[rows, 3 * slides.second + 1] = -e.imag, e.real
@@ -440,50 +440,68 @@ class BodyChart:
     def equations(self, state: BodyState) -> Equations:
         """Return the equations of all pairs at a state."""
         values, speeds = state.values, state.speeds
-        pins, m = self.pins, len(self.pins.own)
+        m = len(self.pins.own)
         count = 2 * (m + len(self.slides.own)) + sum(len(one.scales) for one in self.pairs) + len(self.held_coordinates)
         # the frame has columns, too, which are left out at last
-        width = len(values) + 3
-        matrix, off, second = np.zeros((count, width)), np.zeros(count), np.zeros(count)
-        rates = np.zeros(count)
+        whole = Equations(*(np.zeros(shape) for shape in (count, (count, len(values) + 3), count, count)))
         z = np.append(values[0::3] + 1j * values[1::3], 0j)
         u, w = np.append(np.exp(1j * values[2::3]), 1.0), np.append(speeds[2::3], 0.0)
+        at = self._put_pins(z, u, w, whole)
+        if len(self.slides.own):
+            guided = self._slide_rows(z, u, np.append(speeds[0::3] + 1j * speeds[1::3], 0j), w)
+            at = self._put_slides(at, guided, whole)
+        at = self._put_pairs(at, state, whole)
+        self._put_held(at, state, whole)
+        return whole._replace(jacobian=whole.jacobian[:, :-3])
+
+    def _put_pins(self, z: Number, u: Number, w: Number, whole: Equations) -> int:
+        """Write the rows of all pins, x and y in turn, before all others; return the row behind them."""
+        pins, m, matrix = self.pins, len(self.pins.own), whole.jacobian
         own, other = u[pins.first] * pins.own, u[pins.second] * pins.other
         gap = (z[pins.second] + other - z[pins.first] - own) / self.size
         turned = (np.square(w[pins.first]) * own - np.square(w[pins.second]) * other) / self.size
-        off[0 : 2 * m : 2], off[1 : 2 * m : 2] = gap.real, gap.imag
-        second[0 : 2 * m : 2], second[1 : 2 * m : 2] = -turned.real, -turned.imag
         even, odd = np.arange(0, 2 * m, 2), np.arange(1, 2 * m, 2)
+        whole.open[even], whole.open[odd] = gap.real, gap.imag
+        whole.second[even], whole.second[odd] = -turned.real, -turned.imag
         matrix[even, 3 * pins.first] = matrix[odd, 3 * pins.first + 1] = -1.0
         matrix[even, 3 * pins.second] = matrix[odd, 3 * pins.second + 1] = 1.0
         matrix[even, 3 * pins.first + 2], matrix[odd, 3 * pins.first + 2] = own.imag / self.size, -own.real / self.size
         matrix[even, 3 * pins.second + 2] = -other.imag / self.size
         matrix[odd, 3 * pins.second + 2] = other.real / self.size
-        at, lengths = 2 * m, np.append(self.scales, self.scales[:3])
-        if len(self.slides.own):
-            guided = self._slide_rows(z, u, np.append(speeds[0::3] + 1j * speeds[1::3], 0j), w)
-            at = self._put_slides(at, guided, matrix, off, second)
+        return 2 * m
+
+    @property
+    def _lengths(self) -> Number:
+        """The units of all columns, those of the frame too."""
+        return np.append(self.scales, self.scales[:3])
+
+    def _put_pairs(self, at: int, state: BodyState, whole: Equations) -> int:
+        """Write the rows of all other pairs from a row on; return the row behind them."""
+        lengths = self._lengths
         for one in self.pairs:
             poses, rows = tuple(state.world[link] for link in one.pair.members), slice(at, at + len(one.scales))
             found = np.reshape(one.pair.jacobian(one.ends, poses), (-1, len(one.columns)))[: len(one.scales)]
-            matrix[rows, one.columns] = found * lengths[one.columns] / one.scales[:, None]
+            whole.jacobian[rows, one.columns] = found * lengths[one.columns] / one.scales[:, None]
             closure = one.pair.closure(one.ends, poses)
-            off[rows] = [_value(series, 0) for series in closure] / one.scales
-            second[rows] = [-2.0 * _value(series, 2) for series in closure] / one.scales
+            whole.open[rows] = [_value(series, 0) for series in closure] / one.scales
+            whole.second[rows] = [-2.0 * _value(series, 2) for series in closure] / one.scales
             at += len(one.scales)
-        for held in self.held_coordinates:
+        return at
+
+    def _put_held(self, at: int, state: BodyState, whole: Equations) -> None:
+        """Write the rows of what drivers prescribe from a row on."""
+        lengths = self._lengths
+        for row, held in enumerate(self.held_coordinates, start=at):
             poses = tuple(state.world[link] for link in held.pair.members)
             series = held.pair.coordinate(held.ends, poses)
             value = held.sense * _value(series, 0)
             wanted = (held.first, 0.0, 0.0) if held.law is None else prescribed_rates(self.laws[held.law], state.time)
             apart = value - wanted[0]
-            row = np.reshape(held.pair.jacobian(held.ends, poses), (-1, len(held.columns)))[-1]
-            matrix[at, held.columns] = held.sense * row * lengths[held.columns] / held.scale
-            off[at] = (apart - whole_turns(apart) if held.pair.free_is_angle else apart) / held.scale
-            rates[at] = wanted[1] / held.scale
-            second[at] = (wanted[2] - 2.0 * held.sense * _value(series, 2)) / held.scale
-            at += 1
-        return Equations(off, matrix[:, :-3], rates, second)
+            slopes = np.reshape(held.pair.jacobian(held.ends, poses), (-1, len(held.columns)))[-1]
+            whole.jacobian[row, held.columns] = held.sense * slopes * lengths[held.columns] / held.scale
+            whole.open[row] = (apart - whole_turns(apart) if held.pair.free_is_angle else apart) / held.scale
+            whole.rates[row] = wanted[1] / held.scale
+            whole.second[row] = (wanted[2] - 2.0 * held.sense * _value(series, 2)) / held.scale
 
 
 @dataclass(frozen=True, eq=False)

@@ -309,15 +309,10 @@ def _line(
     count = max(len(given.drives[name][0]) for name in moving)
     columns = (given.drives[name][0] / _unit(solving_order, given, name, count) for name in moving)
     value = np.stack(np.broadcast_arrays(*columns), axis=-1)
-    way = value - value[:, :1]
-    farthest = np.argmax(np.sum(way**2, axis=-1), axis=1)
-    along = way[np.arange(len(way)), farthest][:, None]
-    length2 = np.sum(along**2, axis=-1, keepdims=True)
-    along = np.divide(along, length2, out=np.zeros_like(along), where=length2 > 0.0)
-    share = np.sum(way * along, axis=-1)
-    aside = way - share[..., None] * (value[np.arange(len(way)), farthest][:, None] - value[:, :1])
-    if np.any(np.abs(aside) > ASIDE * np.sqrt(length2)):
+    shares = _shares(value)
+    if shares is None:
         return None
+    share, farthest = shares
     # from its least share to its greatest; the poses' own values are exact, the path's those of its ends
     order = np.argsort(share, axis=1, kind="stable")
     foot = _nearest(solving_order, given, values) if values else 0.0
@@ -325,7 +320,7 @@ def _line(
     count = given.poses
     i = min(int(foot), max(count - 2, 0))
     at_foot = share[:, i : i + 1] * (1.0 - (foot - i)) + share[:, i + 1 : i + 2] * (foot - i)
-    rows = np.arange(len(way))
+    rows = np.arange(len(value))
     each = np.max(np.abs(value[rows, farthest] - value[:, 0]), axis=-1, keepdims=True) / SPACING
     below, above = at_foot - least, most - at_foot
     far = float((each * below).max()), float((each * above).max())
@@ -345,6 +340,21 @@ def _line(
     knots_at = np.array([(-far[0], 0.0, far[1])[k] for k in keeps])
     path = DriverPath(_first(given).driven(drives).of_poses(len(keeps)), knots_at, 0.0)
     return _with_stem(solving_order, path, PosePlaces(places), values)
+
+
+def _shares(value: Number) -> tuple[Number, Number] | None:
+    """Return how far along their line values (designs, poses, drivers) lie, 1 at the farthest, and which that is.
+
+    None where some design's do not lie on a line.
+    """
+    way = value - value[:, :1]
+    farthest = np.argmax(np.sum(way**2, axis=-1), axis=1)
+    along = way[np.arange(len(way)), farthest][:, None]
+    length2 = np.sum(along**2, axis=-1, keepdims=True)
+    onward = np.divide(along, length2, out=np.zeros_like(along), where=length2 > 0.0)
+    share: Number = np.sum(way * onward, axis=-1)
+    aside = way - share[..., None] * along
+    return None if np.any(np.abs(aside) > ASIDE * np.sqrt(length2)) else (share, farthest)
 
 
 def _polyline(solving_order: SolvingOrder, given: Inputs, values: Mapping[str, Number]) -> PathOfPoses:
