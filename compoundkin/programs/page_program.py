@@ -21,6 +21,7 @@ from compoundkin.kinematics.groups.pair_sides import Reason
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import residual
 from compoundkin.model.attributes import OF_LINKS
+from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
 from compoundkin.programs.backends.tape_program import Instruction, allocate_rows
 from compoundkin.programs.dimensions import FreeDimension, StatedDimensions, mechanism_with
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, node_strata
@@ -29,6 +30,7 @@ from compoundkin.programs.graph.operation_graph import (
     DRIVE,
     INPUT,
     OPERATIONS,
+    PARAMETER,
     SEED,
     SIGN,
     InputNumber,
@@ -38,6 +40,7 @@ from compoundkin.programs.graph.operation_graph import (
 from compoundkin.programs.recording.recorded_mechanism import RecordedMechanism, Recording, record_mechanism
 from compoundkin.programs.recording.recorded_motion import ProgramOutput, RecordedLink, RecordedMotion, record_outputs
 from compoundkin.programs.recording.recorded_number import RecordedNumber
+from compoundkin.programs.recording.seeded_order import MORE_ORDERS, whole_curve
 from compoundkin.programs.solved_designs import ProgramConfiguration, seed_values
 from compoundkin.programs.sources.fixed_configuration import CarriedState, carried_states, changed_modes
 
@@ -88,7 +91,7 @@ class PageProgram(ShortRepr):
         """Record a motion; outputs that no program tells are left out.
 
         Where it passes a change point, the signs of the groups that go on in their other modes are seeds. Raises
-        InvalidInput where such a group is beside one without a closed form, or where the mechanism has profiles.
+        InvalidInput where such a group is beside one without a closed form.
         """
         changed = changed_modes(motion)
         if changed and motion.solving_order.numbered:
@@ -103,11 +106,7 @@ class PageProgram(ShortRepr):
         free = buildable_dimensions(stated, single)
         mechanism = record_mechanism(Recording(motion.solving_order, signs, free, order, still, ends))
         found = dict(_recordable(mechanism, [one for one in outputs if one.attribute.order <= order]))
-        program = cls(motion, stated, mechanism, tuple(found), tuple(found.values()))
-        if contacts := [one.name for one in program.seeds if one.name in mechanism.order.pairs]:
-            what = "contacts with a profile are searched for at every pose"
-            raise InvalidInput(Problem(contacts[0], what, "solve the mechanism for each dimension"))
-        return program
+        return cls(motion, stated, mechanism, tuple(found), tuple(found.values()))
 
     @cached_property
     def dimensions(self) -> tuple[FreeDimension, ...]:
@@ -118,6 +117,12 @@ class PageProgram(ShortRepr):
         free = self.mechanism.recording.free
         read = [one for one in free if one.is_of_link or not self._inputs.isdisjoint(one.inputs)]
         return consistent_dimensions(self.motion, self.mechanism, self.carried[0], self.stated, read)
+
+    @cached_property
+    def contacts(self) -> tuple[SearchedContact, ...]:
+        """The contacts with profiles that it depends on."""
+        names = dict.fromkeys(one.name for one in self._inputs if one.kind == SEED)
+        return tuple(SearchedContact.of(self.mechanism, name) for name in names if name in self.mechanism.order.pairs)
 
     @cached_property
     def signs(self) -> Mapping[InputNumber, int]:
@@ -191,7 +196,7 @@ class PageProgram(ShortRepr):
 
     @cached_property
     def seeds(self) -> tuple[InputNumber, ...]:
-        """What is found outside of it: states of groups, counted turns."""
+        """What is found outside of it: states of groups, counted turns, contacts with profiles."""
         return tuple(one for one in self._inputs if one.kind == SEED)
 
     @cached_property
@@ -204,8 +209,10 @@ class PageProgram(ShortRepr):
     @cached_property
     def carried(self) -> tuple[tuple[CarriedState, ...], tuple[CarriedState, ...]]:
         """What becomes of its seeds in their order; sides of singularities."""
-        found = carried_states(self.mechanism, [k for part in self._results for k in part])
-        return found[: len(self.seeds)], found[len(self.seeds) :]
+        contacts = {one.name for one in self.contacts}
+        found = carried_states(self.mechanism, [k for part in self._results for k in part], contacts)
+        count = len(self.seeds) - sum(one.name in contacts for one in self.seeds)
+        return found[:count], found[count:]
 
     def own(
         self, nodes: Sequence[int], poses: Number, rows: Mapping[InputNumber, Number] = MappingProxyType({})
@@ -224,15 +231,48 @@ class PageProgram(ShortRepr):
         """Its operations, in five sections: what closes groups, positions, rates and outputs, reasons, what else."""
         closing, places, rates = self._results
         carried = (one.now.x for part in self.carried for one in part)
+        aims = (part.x for one in self.contacts for part in (one.aim.real, one.aim.imag))
         reasons = (node for each in self.reasons for one in each for node in (one.holds, *one.words))
         told = _once(node for node in reasons if isinstance(node, int))
         shown = {one.inputs[0]: None for one in self.dimensions}
         free = self.mechanism.recording.free
         known = {one.inputs[0]: float(np.ravel(self.stated.own(one))[0]) for one in free if one.inputs[0] not in shown}
-        sections = _once((*closing, *carried)), places, rates, told, _once(self.more)
+        sections = _once((*closing, *carried, *aims)), places, rates, told, _once(self.more)
         return operation_table(
             self.mechanism.graph, sections, tuple(shown), (*self.drives, *self.seeds, *self.rows), known
         )
+
+
+@dataclass(frozen=True, repr=False)
+class SearchedContact(ShortRepr):
+    """A contact with a profile, which whoever runs the program searches.
+
+    `aim` is what it is searched by in the profile's frame: the place to which the nearest point is the contact, or, of
+    a flat face, the direction in which that is farthest. The program is given the parameter there, and the profile's
+    Taylor coefficients.
+    """
+
+    name: str
+    pair: ProfileContact
+    aim: RecordedNumber
+
+    @classmethod
+    def of(cls, mechanism: RecordedMechanism, name: str) -> SearchedContact:
+        """Return the contact of a recorded pair."""
+        pair = as_profile_contact(mechanism.order.pairs[name])
+        assert pair is not None
+        block = mechanism.block
+        aim = pair.aim(block.ends[name], tuple(block.world[one].trimmed(0) for one in pair.members))
+        return cls(name, pair, mechanism.number(aim))
+
+    def numbers(self, aim: Number, order: int) -> dict[InputNumber, Number]:
+        """Return what the program is given where the contact is searched by values of its aim."""
+        curve = whole_curve(self.pair)
+        s = (curve.support if self.pair.is_flat else curve.foot)(aim).c[0]
+        found = {InputNumber(SEED, self.name, PARAMETER): s}
+        for k, one in enumerate(curve.expansion(s, order)):
+            found |= {InputNumber(SEED, self.name, f"x{k}"): one.real, InputNumber(SEED, self.name, f"y{k}"): one.imag}
+        return found
 
 
 def _once(nodes: Iterable[int]) -> tuple[int, ...]:
@@ -311,15 +351,24 @@ def consistent_dimensions(
 
     All are inputs of the recorded mechanism, whose groups without a closed form have `states`.
     """
-    pairs = motion.structure.redundant
+    pairs = tuple(mechanism.order.pairs[pair.name] for pair in motion.structure.redundant)
     if not pairs or not dimensions:
         return tuple(dimensions)
     opened = mechanism.number(residual(pairs, mechanism.block, mechanism.order.size)).x
     given = dict(_changed_inputs(motion, mechanism, stated, dimensions))
-    given |= _own_states(motion, states)
-    for _ in range(STEPS if states else 0):
-        now = node_values(mechanism.graph, [one.now.x for one in states], given)
+    given |= _own_states(motion, [one.given for one in states])
+    graph = mechanism.graph
+    needed = (graph.nodes[k].given for k in graph.inputs([opened, *(one.now.x for one in states)]))
+    names = dict.fromkeys(one.name for one in needed if one is not None and one.kind == SEED)
+    contacts = [SearchedContact.of(mechanism, name) for name in names if name in mechanism.order.pairs]
+    own = {one.name: one.numbers(np.zeros(()), mechanism.recording.order + MORE_ORDERS) for one in contacts}
+    given |= _own_states(motion, [given for one in own.values() for given in one])
+    for _ in range(STEPS if states or contacts else 0):
+        now = node_values(graph, [one.now.x for one in states], given)
         given |= {one.given: value for one, value in zip(states, now, strict=True)}
+        for one in contacts:
+            x, y = node_values(graph, [one.aim.real.x, one.aim.imag.x], given)
+            given |= one.numbers(x + 1j * y, mechanism.recording.order + MORE_ORDERS)
     (found,) = node_values(mechanism.graph, [opened], given)
     rows = np.broadcast_to(found, (len(dimensions), np.shape(found)[-1] if np.ndim(found) else 1))
     stays = np.any(rows <= OPEN_GAP**2, axis=1) & ~np.any(rows > OPEN_GAP**2, axis=1)
@@ -332,8 +381,8 @@ def _sample_poses(motion: Motion) -> Number:
     return known[np.linspace(0, len(known) - 1, POSES).round().astype(int)]
 
 
-def _own_states(motion: Motion, states: Sequence[CarriedState]) -> dict[InputNumber, Number]:
-    own, at = seed_values([one.given for one in states], motion), _sample_poses(motion)
+def _own_states(motion: Motion, states: Sequence[InputNumber]) -> dict[InputNumber, Number]:
+    own, at = seed_values(states, motion), _sample_poses(motion)
     return {given: values[:, at] for given, values in own.items()}
 
 

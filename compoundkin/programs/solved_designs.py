@@ -24,7 +24,7 @@ from compoundkin.kinematics.solution import Description, first_configuration, so
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.profile_contact import as_profile_contact
 from compoundkin.programs.call_numbers import CallNumbers, numbers_of_designs
-from compoundkin.programs.graph.operation_graph import DRIVE, SIGN, TURNS, InputNumber, group_seed
+from compoundkin.programs.graph.operation_graph import DRIVE, PARAMETER, SIGN, TURNS, InputNumber, group_seed
 from compoundkin.programs.limit_screening import ScreenedDesigns
 
 # Solves the designs of some numbers.
@@ -124,7 +124,7 @@ def _contact_seeds(
     pair = as_profile_contact(motion.solving_order.pairs[name])
     assert pair is not None
     parameter = pair.parameter(block.ends[name], tuple(block.world[member] for member in pair.members))
-    yield "parameter", parameter
+    yield PARAMETER, parameter
     highest = max((int(seed.part[1:]) for seed in parts if seed.part[0] in "xy"), default=0)
     for k, coefficient in enumerate(pair.curve.expansion(parameter, highest)):
         yield f"x{k}", coefficient.real

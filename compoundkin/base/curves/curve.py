@@ -71,6 +71,11 @@ class Curve(ABC):
         return cross(first, second) / np.abs(first) ** 3
 
     @property
+    def end_points(self) -> tuple[complex, ...]:
+        """Both ends of an open curve; none of a closed one."""
+        return () if self.closed else tuple(complex(self.at(s).c[0]) for s in (self.low, self.high))
+
+    @property
     def breaks(self) -> tuple[float, ...]:
         """The parameters, within the period, at which derivatives may jump. A curve smooth all along has none."""
         return ()

@@ -174,6 +174,11 @@ class FollowerFromState(FollowerSolver):
     One step of Newton, and no search.
     """
 
+    def side(self, block: Block, state: Sequence[Number]) -> Number:
+        """Return the slope of the contact's distance by the coordinate: zero where the two contacts of a path meet."""
+        leading = self.mounted.leading(block)
+        return self._gap(block.ends[self.pair.name], lambda q: self.mounted.poses(leading, q), state[0])[1]
+
     def close(self, block: Block, mode: Sequence[Number]) -> None:
         """Assemble the group from its state, and add its links to what is known."""
         ends, leading = block.ends[self.pair.name], self.mounted.leading(block)
@@ -182,6 +187,8 @@ class FollowerFromState(FollowerSolver):
             return self.mounted.poses(leading, coordinate)
 
         gap, slope = self._gap(ends, placing, mode[0])
-        found, closed, slope = self._checked(block, placing, mode[0] - gap / slope)
+        # a step that does not close it yet leads nearer: whoever carries the state goes on from there
+        found = mode[0] - gap / slope
+        _, closed, slope = self._checked(block, placing, found)
         block.fail(closed, self.index)
         self._published(block, found, slope)

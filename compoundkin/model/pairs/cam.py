@@ -127,16 +127,25 @@ class Cam(ProfileContact, Guided, FrictionContact):
         """Return the parameter of the profile at the contact."""
         return self._foot(ends, poses)[2].c[0]
 
+    def aim(self, ends: Ends, poses: Poses) -> Number:
+        """Return the middle of the roller in the profile's frame."""
+        return self._seen(ends, poses)[2].c[0]
+
     def follower_point(self, ends: Ends, poses: Poses) -> Number:
         """Return the middle of the roller."""
         return poses[1].at(ends[1].point).c[0]
 
     def _foot(self, ends: Ends, poses: Poses) -> tuple[Pose, Series, Series]:
         """The frame of the profile, the roller's middle, and the parameter of its foot."""
+        frame, centre, seen = self._seen(ends, poses)
+        return frame, centre, self.curve.foot(seen)
+
+    def _seen(self, ends: Ends, poses: Poses) -> tuple[Pose, Series, Series]:
+        """The frame of the profile, the roller's middle, and where that is in the frame."""
         side = poses[0].carry(ends[0])
         frame = Pose(as_series(side.point), side.along)
         centre = poses[1].at(ends[1].point)
-        return frame, centre, self.curve.foot(frame.u.conj() * (centre - frame.z))
+        return frame, centre, frame.u.conj() * (centre - frame.z)
 
     def is_properly_assembled(self, ends: Ends, poses: Poses) -> Number:
         """Tell whether the foot is on the profile, not beyond an end of it."""
@@ -181,7 +190,7 @@ class Cam(ProfileContact, Guided, FrictionContact):
 
     def no_contact_reason(self) -> str:
         """Return the message that the path does not meet the profile."""
-        ends = () if self.curve.closed else [complex(self.curve.at(s).c[0]) for s in (self.curve.low, self.curve.high)]
+        ends = self.curve.end_points
         between = " between its ends " + " and ".join(f"({p.real:.6g}, {p.imag:.6g})" for p in ends) if ends else ""
         return f"on its way {self.at} does not meet the profile of {self.on}{between}"
 

@@ -209,6 +209,11 @@ class Face(ProfileContact, FrictionContact):
         """Return the parameter of the profile at the contact."""
         return self._support(*self._sides(ends, poses)).c[0]
 
+    def aim(self, ends: Ends, poses: Poses) -> Number:
+        """Return the face's normal in the profile's frame."""
+        frame, face = self._sides(ends, poses)
+        return (frame.u.conj() * self._normal(face)).c[0]
+
     def _sides(self, ends: Ends, poses: Poses) -> tuple[Pose, End]:
         """The frame of the profile, and the face in the world."""
         side, face = poses[0].carry(ends[0]), poses[1].carry(ends[1])

@@ -82,6 +82,13 @@ class ProfileContact(Contact):
     def parameter(self, ends: Ends, poses: Poses) -> Number:
         """Return the parameter of the profile at the contact."""
 
+    @abstractmethod
+    def aim(self, ends: Ends, poses: Poses) -> Number:
+        """Return what the contact is searched by, in the profile's frame.
+
+        It is the point to which the nearest place is the contact; of a face its normal, in which that is farthest.
+        """
+
     @cached_property
     def hollows(self) -> tuple[tuple[float, float], ...]:
         """The parameter's spans where hollows are narrower than the roller or flat face."""

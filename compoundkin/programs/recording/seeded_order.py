@@ -21,9 +21,17 @@ from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.fields import Key
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Ends
-from compoundkin.model.pairs.profile_contact import as_profile_contact
+from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
 from compoundkin.model.profiles import Profile
-from compoundkin.programs.graph.operation_graph import SEED, SIGN, TURNS, InputNumber, OperationGraph, group_seed
+from compoundkin.programs.graph.operation_graph import (
+    PARAMETER,
+    SEED,
+    SIGN,
+    TURNS,
+    InputNumber,
+    OperationGraph,
+    group_seed,
+)
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.mobility_count import Group
@@ -124,6 +132,11 @@ class LocalCurve(Curve):
         return self.curve.samples
 
     @property
+    def end_points(self) -> tuple[complex, ...]:
+        """Both ends of the whole curve, if it is open."""
+        return self.curve.end_points
+
+    @property
     def size(self) -> float:
         """The length scale of the whole curve."""
         return self.curve.size
@@ -153,6 +166,11 @@ class LocalProfile(Profile):
         return self.whole.circle
 
 
+def whole_curve(pair: ProfileContact) -> Curve:
+    """Return the whole profile of a pair that was recorded beside its contact."""
+    return pair.curve.curve if isinstance(pair.curve, LocalCurve) else pair.curve
+
+
 def with_local_profile(pair: Pair, graph: OperationGraph, order: int) -> Pair:
     """Return a pair whose profile is known beside its contact only, by inputs.
 
@@ -161,7 +179,7 @@ def with_local_profile(pair: Pair, graph: OperationGraph, order: int) -> Pair:
     profiled = as_profile_contact(pair)
     if profiled is None:
         return pair
-    parameter = RecordedNumber.given(graph, InputNumber(SEED, pair.name, "parameter"))
+    parameter = RecordedNumber.given(graph, InputNumber(SEED, pair.name, PARAMETER))
     coefficients = [
         RecordedNumber.given(graph, *(InputNumber(SEED, pair.name, f"{part}{k}") for part in "xy"))
         for k in range(max(order, LEAST_ORDER) + MORE_ORDERS + 1)

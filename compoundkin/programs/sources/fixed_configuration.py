@@ -102,11 +102,16 @@ class CarriedState:
     kept: RecordedNumber | None = None
 
 
-def carried_states(mechanism: RecordedMechanism, wanted: Collection[int]) -> tuple[CarriedState, ...]:
-    """Return what some nodes depend on from the pose before. Raises InvalidInput for what no text can find."""
+def carried_states(
+    mechanism: RecordedMechanism, wanted: Collection[int], but: Collection[str] = ()
+) -> tuple[CarriedState, ...]:
+    """Return what some nodes depend on from the pose before, but for seeds of some names.
+
+    Raises InvalidInput for what no text can find.
+    """
     graph = mechanism.graph
     inputs = (graph.nodes[k].given for k in graph.inputs(wanted))
-    given = [one for one in inputs if one is not None and one.kind == SEED]
+    given = [one for one in inputs if one is not None and one.kind == SEED and one.name not in but]
     states = [_carried_state(mechanism, one) for one in given]
     groups = {one.name for one, state in zip(given, states, strict=True) if state.is_corrected}
     solvers = [solver for solver in mechanism.order.solvers if group_seed(solver.index) in groups]

@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
+from math import comb
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,7 @@ import numpy as np
 from compoundkin.analysis.characteristics.outputs import chosen_outputs, outputs_of
 from compoundkin.analysis.characteristics.transmission import coriolis_names, index_names
 from compoundkin.base.arrays import Number, unwrapped
+from compoundkin.base.curves import Curve
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.dynamics.reactions.force_figures import frame_point
 from compoundkin.kinematics import Motion
@@ -30,8 +33,10 @@ from compoundkin.model.attributes import (
     unit_of,
 )
 from compoundkin.programs.dimensions import FreeDimension
+from compoundkin.programs.graph.operation_graph import PARAMETER, SEED, InputNumber
 from compoundkin.programs.page_program import PageProgram, RecordedReason
 from compoundkin.programs.recording.recorded_motion import ProgramOutput, output_of
+from compoundkin.programs.recording.seeded_order import whole_curve
 from compoundkin.programs.solved_designs import seed_values
 from compoundkin.view.page.live.compact_data import table_data
 from compoundkin.view.page.live.panel_data import panel_data, template_data
@@ -115,6 +120,8 @@ class LiveData:
             "drives": [self._drive(name) for name in program.mechanism.drives],
             "size": self.motion.size,
             "states": list(self._states()),
+            "contacts": list(self._contacts()),
+            "seeds": len(program.seeds),
             "sides": [self.places[one.now.x] for one in program.carried[1]],
             "groups": list(self._groups()),
             "panel": panel_data(program.stated, names),
@@ -154,13 +161,36 @@ class LiveData:
     def _states(self) -> Iterator[dict[str, Any]]:
         """Yield what is carried from design to design: its row, what becomes of it, what it is in the own motion."""
         program = self.program
-        own = seed_values(program.seeds, self.motion)
-        for row, (given, state) in enumerate(zip(program.seeds, program.carried[0], strict=True), len(program.drives)):
+        own, rows = seed_values(program.seeds, self.motion), self._rows
+        for state in program.carried[0]:
+            given, row = state.given, rows[state.given]
             values = packed_doubles(own[given][0][self.chosen])
             kinds: dict[str, Any] = {"angle": state.is_angle, "corrected": state.is_corrected}
             if given in program.signs:
                 kinds["sign"] = program.signs[given]
             yield {"row": row, "now": self.places[state.now.x], "own": values, **kinds}
+
+    @cached_property
+    def _rows(self) -> Mapping[InputNumber, int]:
+        """The rows of what the program is given besides dimensions and drivers."""
+        return {one: row for row, one in enumerate(self.program.seeds, len(self.program.drives))}
+
+    def _contacts(self) -> Iterator[dict[str, Any]]:
+        """Yield the contacts with profiles: by what they are searched, the rows that are given, and the profile."""
+        seeds, rows = self.program.seeds, self._rows
+        for one in self.program.contacts:
+            mine = {given.part: given for given in seeds if given.name == one.name}
+            aim = [self.places[part.x] for part in (one.aim.real, one.aim.imag)]
+            own = {InputNumber(SEED, one.name, PARAMETER): None}
+            values = seed_values(own, self.motion)[next(iter(own))][0][self.chosen]
+            yield {
+                "flat": one.pair.is_flat,
+                "aim": aim,
+                "own": packed_doubles(values),
+                "row": rows[mine[PARAMETER]] if PARAMETER in mine else -1,
+                "rows": [[rows[given], part[0], int(part[1:])] for part, given in mine.items() if part != PARAMETER],
+                "profile": profile_data(whole_curve(one.pair)),
+            }
 
     def _dimension(self, one: FreeDimension) -> dict[str, Any]:
         unit = self.program.stated.unit(one)
@@ -205,6 +235,56 @@ class LiveData:
             parts = {part: self.places[node] for part, node in nodes.items()}
             own = self._own.has_output(output, [*nodes.values()])
             yield {"name": output.name, "parts": parts, "wrapped": output.is_wrapped, "own": own}
+
+
+# A profile is given by polynomials of this degree, each about the middle of its stretch, which reproduce the Taylor
+# coefficients 0 .. 3 to such parts of the size (by the parameter as an angle).
+DEGREE = 12
+REPRODUCED = np.array([4e-14, 4e-13, 4e-11, 4e-9])
+# Where in a stretch that is tried; no stretch is shorter than this part of the whole.
+TRIED, SHORTEST = np.array([-1.0 + 1e-9, -0.75, -0.25, 0.25, 0.75, 1.0 - 1e-9]), 1e-5
+
+
+def profile_data(curve: Curve) -> dict[str, Any]:
+    """Return a profile as polynomials for a script, between the breaks of its derivatives.
+
+    >>> profile_data(Analytic(Series.turn, 0.0, 2.0 * np.pi, closed=True))["closed"]
+    True
+    """
+    inner = sorted(at for at in curve.breaks if curve.low < at < curve.high)
+    edges = [curve.low, *inner, curve.high]
+    left, pieces = [*pairwise(edges)][::-1], list[tuple[float, Number]]()
+    unit = ((curve.high - curve.low) / (2.0 * np.pi)) ** np.arange(len(REPRODUCED)) / curve.size
+    while left:
+        low, high = left.pop()
+        middle = 0.5 * (low + high)
+        known = np.array(curve.expansion(middle, DEGREE))
+        s = middle + 0.5 * (high - low) * TRIED
+        orders = range(len(REPRODUCED))
+        found = np.array([_coefficient(known, k, s - middle) for k in orders])
+        off = np.max(np.abs(np.array(curve.expansion(s, len(orders) - 1)) - found), axis=1) * unit
+        if np.all(off <= REPRODUCED) or high - low < SHORTEST * (curve.high - curve.low):
+            pieces.append((low, known))
+        else:
+            left += [(middle, high), (low, middle)]
+    known = np.array([coefficients for _, coefficients in pieces]).ravel()
+    return {
+        "low": curve.low,
+        "high": curve.high,
+        "closed": curve.closed,
+        "degree": DEGREE,
+        "edges": packed_doubles(np.array([*(low for low, _ in pieces), curve.high])),
+        "x": packed_doubles(known.real),
+        "y": packed_doubles(known.imag),
+    }
+
+
+def _coefficient(known: Number, k: int, away: Number) -> Number:
+    """Return the Taylor coefficient of an order at places away from where a polynomial is known."""
+    found: Number = np.zeros_like(away, dtype=complex)
+    for n in range(DEGREE, k - 1, -1):
+        found = found * away + comb(n, k) * known[n]
+    return found
 
 
 @dataclass(frozen=True, eq=False)

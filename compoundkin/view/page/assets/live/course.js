@@ -232,6 +232,15 @@
         });
       }
     }
+    // where it comes to rest before a pose at which it rests
+    rest(k, zero) {
+      let [moves, rests] = [k - 1, k];
+      for (let n = 0; n < HALVINGS; n++) {
+        const middle = (moves + rests) / 2;
+        if (Math.abs(this.at(middle)) <= zero) rests = middle; else moves = middle;
+      }
+      return rests;
+    }
     // where it changes its sign, in order
     get crossings() {
       return (this.crossed ??= this.changed());
@@ -245,12 +254,17 @@
         if (!(sign(fa) * sign(fb) < 0)) continue; // not known at a limit position either
         found.push(page.root((s) => this.at(s), a, b, fa, fb));
       }
+      // a rest begins where it is first zero; one through the seam of a cycle, before its end
       for (let k = 0; k <= last; k++) {
-        if (sign(values[k])) continue;
-        const seam = whole.closes && (k === 0 || k === last);
-        if (seam && k === last) continue;
-        const [before, after] = seam ? [values[last - 1], values[1]] : [values[k - 1], values[k + 1]];
-        if (sign(before) * sign(after) < 0) found.push(k);
+        if (sign(values[k]) !== 0) continue;
+        let end = k;
+        while (end < last && sign(values[end + 1]) === 0) end++;
+        const isRest = end > k, first = Array.from(values).findIndex((value) => sign(value) !== 0);
+        const [head, tail] = [whole.closes && k === 0, whole.closes && end === last];
+        const before = head ? values.findLast((value) => sign(value) !== 0) : values[k - 1], after = tail ? values[first] : values[end + 1];
+        const isTold = head ? sign(values[last - 1]) !== 0 : !(tail && k === last);
+        if (first >= 0 && isTold && sign(before) * sign(after) < 0) found.push(isRest && k > 0 ? this.rest(k, zero) : k);
+        k = end;
       }
       return found.sort((a, b) => a - b);
     }

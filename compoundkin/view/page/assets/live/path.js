@@ -45,14 +45,14 @@
       this.one = new page.Machine(this.program, 1);
       this.drives.flat().forEach((values, k) => this.whole.rows[k].set(values));
       // what loads need that one pose does not know, given at the poses
-      this.firstGiven = 3 * this.drives.length + live.states.length;
+      this.firstGiven = 3 * this.drives.length + live.seeds;
       this.given = (live.forces?.rows ?? []).map((text) => page.unpacked(text, data.poses));
       this.given.forEach((values, k) => this.whole.rows[this.firstGiven + k].set(values));
       // quantities of forces come last of all
       this.outputs = [...live.program.outputs, ...(live.forces?.outputs ?? [])];
       this.last = this.program.ends[live.forces ? 4 : 2];
       this.states = new page.States(live, this.program, { start: this.start, values: this.drives.map(([values]) => values), single: this.one });
-      this.home = { numbers: this.own, values: live.states.map(({ own }) => page.unpacked(own, data.poses)), sides: null };
+      this.home = { numbers: this.own, values: this.states.all.map(({ own }) => page.unpacked(own, data.poses)), sides: null };
     }
     driven(machine, drives) {
       drives.forEach((values, index) => values.forEach((value, order) => { machine.rows[3 * index + order][0] = value; }));

@@ -1,5 +1,6 @@
 // The states: what a program is given besides dimensions and drivers, carried from design to design and pose to pose.
-// They are positions of groups without a closed form, which Newton's steps correct, and angles with their full turns.
+// They are positions of groups without a closed form, which Newton's steps correct, angles with their full turns, and
+// where profiles are touched, which is searched.
 (() => {
   "use strict";
   const page = (window.compoundkin = window.compoundkin || {});
@@ -10,15 +11,82 @@
   const LEAP = 0.5; // what moves farther (parts of the size, radians) has left its configuration
   const STRAY = 0.05; // so far from where it was led to, a pose may be of another branch: shorter steps are taken
   const SHORTEST = 1 / 64; // of the way between two poses, or two designs
+  const SAMPLES = 360, HALVINGS = 60, RESTS = 1e-15; // places of a profile that are tried; steps from there, and when they end
+  const FOUND = 1e-6; // a contact moves on by less (radians): what is left is its square
   const UNEVEN = 0.02; // from pose to pose states go on as in the design before, but for this and the change
 
   const wrapped = (angle) => angle - TURN * Math.round(angle / TURN);
   const between = (here, there, part) => (part === 1 ? there : here.map((value, k) => value + part * (there[k] - value)));
 
+  // A profile in polynomials, each about the middle of its stretch (live_data.py), and the search for where it is touched.
+  class Profile {
+    constructor({ low, high, closed, degree, edges, x, y }) {
+      const ends = page.unpacked(edges, 0), open = (text) => page.unpacked(text, (ends.length - 1) * (degree + 1));
+      Object.assign(this, { low, high, closed, degree, span: high - low, edges: ends, x: open(x), y: open(y) });
+      this.unit = this.span / TURN;
+      this.found = new Float64Array(2 * (degree + 1));
+      this.samples = Array.from({ length: closed ? SAMPLES : SAMPLES + 1 }, (_, k) => low + (k * this.span) / SAMPLES);
+      [this.sx, this.sy] = [0, 1].map((part) => Float64Array.from(this.samples, (s) => this.at(s, 0)[part]));
+    }
+    wrapped(s) {
+      return this.closed ? s - this.span * Math.floor((s - this.low) / this.span) : s;
+    }
+    // Taylor coefficients up to an order: x and y of each
+    at(parameter, order) {
+      const s = this.wrapped(parameter), { edges, degree, found } = this;
+      let low = 0, high = edges.length - 1;
+      while (high - low > 1) { const middle = (low + high) >> 1; if (edges[middle] <= s) low = middle; else high = middle; }
+      const away = s - (edges[low] + edges[low + 1]) / 2, base = low * (degree + 1);
+      for (let k = 0; k <= order; k++) {
+        let [x, y, ways] = [0, 0, 1]; // degree over k, then n over k
+        for (let j = 1; j <= k; j++) ways = (ways * (degree - k + j)) / j;
+        for (let n = degree; n >= k; n--) {
+          x = x * away + ways * this.x[base + n];
+          y = y * away + ways * this.y[base + n];
+          ways = (ways * (n - k)) / n;
+        }
+        found[2 * k] = x;
+        found[2 * k + 1] = y;
+      }
+      return found;
+    }
+    // the parameter of the place nearest to a point, or of that farthest in a direction: where this has its greatest
+    // value among samples, then by Newton's steps between the samples beside it
+    touched(ax, ay, isFlat) {
+      if (ax !== ax || ay !== ay) return NaN;
+      const { sx, sy, samples, closed } = this, last = samples.length - 1;
+      let best = 0, most = -Infinity;
+      for (let k = 0; k <= last; k++) {
+        const dx = sx[k] - ax, dy = sy[k] - ay, value = isFlat ? sx[k] * ax + sy[k] * ay : -dx * dx - dy * dy;
+        if (value > most) [most, best] = [value, k];
+      }
+      const step = this.span / SAMPLES, s = samples[best];
+      let low = s - step, high = s + step;
+      if (!closed) [low, high] = [Math.max(low, this.low), Math.min(high, this.high)];
+      const rise = (at) => {
+        const [x, y, dx, dy, bx, by] = this.at(at, 2);
+        return isFlat ? [ax * dx + ay * dy, 2 * (ax * bx + ay * by)] : [(ax - x) * dx + (ay - y) * dy, 2 * ((ax - x) * bx + (ay - y) * by) - dx * dx - dy * dy];
+      };
+      if (low === s && rise(s)[0] <= 0) return s;
+      if (high === s && rise(s)[0] >= 0) return s;
+      let at = s;
+      for (let round = 0; round < HALVINGS; round++) {
+        const [slope, bend] = rise(at);
+        if (slope > 0) low = at; else high = at;
+        const next = at - slope / bend, inside = next > low && next < high ? next : (low + high) / 2;
+        const far = Math.abs(inside - at);
+        at = inside;
+        if (far <= RESTS * this.span) break;
+      }
+      return closed ? this.wrapped(at) : at;
+    }
+  }
+
   class States {
     // `values` are those of the drivers at all poses, `single` a machine of one pose, `start` where everything starts
-    constructor({ size, states, sides, dimensions }, program, { start, values, single }) {
-      Object.assign(this, { program, size, all: states, sides, start, single });
+    constructor({ size, states, contacts, sides, dimensions }, program, { start, values, single }) {
+      const searched = contacts.map((one) => ({ ...one, profile: new Profile(one.profile), order: Math.max(0, ...one.rows.map(([, , k]) => k)) }));
+      Object.assign(this, { program, size, all: [...states, ...searched], sides, start, single });
       this.signs = states.flatMap(({ sign, own }, index) => (sign === undefined ? [] : [{ index, sign, own: page.unpacked(own, values[0].length) }]));
       this.special = dimensions.flatMap(({ keeps, value }, index) => (keeps === false ? [[index, value]] : []));
       this.drives = (k) => values.map((one) => one[k]);
@@ -33,8 +101,12 @@
       return this.all.length > 0;
     }
     // how far a number of a state is from another, in parts of the size or radians
-    away({ angle }, here, there) {
+    away({ angle, profile }, here, there) {
+      if (profile) return profile.closed ? wrapped((here - there) / profile.unit) : (here - there) / profile.unit;
       return angle ? wrapped(here - there) : (here - there) / this.size;
+    }
+    unit({ angle, profile }) {
+      return profile ? profile.unit : angle ? 1 : this.size;
     }
 
     // the states for other dimensions, with the machine left at them: those of a design nearby, corrected at all poses
@@ -63,10 +135,25 @@
       return numbers.reduce((far, to, k) => Math.max(far, Math.abs(to - before[k]) / (this.units[k] || 1)), 0);
     }
     give(machine, values, k = null) {
-      this.all.forEach(({ row }, index) => {
-        if (k === null) machine.rows[row].set(values[index]);
-        else machine.rows[row][0] = values[index];
+      this.all.forEach(({ row, rows, profile, order }, index) => {
+        const own = k === null ? values[index] : [values[index]];
+        if (row >= 0) machine.rows[row].set(own);
+        if (!profile) return;
+        for (let n = 0; n < own.length; n++) {
+          const found = profile.at(own[n], order);
+          for (const [place, part, k] of rows) machine.rows[place][n] = found[2 * k + (part === "y" ? 1 : 0)];
+        }
       });
+    }
+    // searches a contact at all poses of a machine; tells of each by how much it has moved
+    search(machine, { aim: [x, y], profile, flat }, own, moved) {
+      const [ax, ay] = [machine.row(x, 0), machine.row(y, 1)];
+      for (let k = 0; k < own.length; k++) {
+        const found = profile.touched(ax[k], ay[k], flat);
+        if (found !== found) continue;
+        moved(k, Math.abs(this.away({ profile }, found, own[k])));
+        own[k] = found;
+      }
     }
 
     // corrects states until they stay; those that do not are left as they were
@@ -79,7 +166,9 @@
         let open = false;
         this.open = new Uint8Array(machine.length);
         this.all.forEach((state, index) => {
-          const now = machine.row(state.now, 0), own = values[index];
+          const own = values[index];
+          if (state.profile) return this.search(machine, state, own, (k, far) => { if (!(far <= FOUND)) this.open[k] = 1; });
+          const now = machine.row(state.now, 0);
           if (!state.corrected) open = this.counted(now, own, near.values[index]) || open;
           else {
             for (let k = 0; k < own.length; k++) {
@@ -98,7 +187,7 @@
         const passes = near.sides && sides.some((side, index) => side[k] * near.sides[index][k] < 0);
         if (!this.open[k] && !leaps && !passes) continue;
         this.lost[k] = this.corrected ? 1 : 0;
-        this.all.forEach((state, index) => { if (state.corrected) values[index][k] = before[index][k]; });
+        this.all.forEach((state, index) => { if (state.corrected || state.profile) values[index][k] = before[index][k]; });
       }
     }
     // whether what is still open is no number any more
@@ -169,7 +258,7 @@
         const closes = this.newton(one, guess) && this.apart(guess, led) <= STRAY;
         const sides = closes ? this.sides.map((place) => one.row(place, 0)[0]) : null;
         if (closes && !(side && sides.some((now, index) => now * side[index] < 0))) {
-          slope = this.all.map((each, index) => (this.away(each, guess[index], state[index]) * (each.angle ? 1 : this.size)) / h);
+          slope = this.all.map((each, index) => (this.away(each, guess[index], state[index]) * this.unit(each)) / h);
           [state, side] = [guess, sides];
           t += h;
           h = Math.min(2 * h, 1 - t);
@@ -200,6 +289,12 @@
         one.run(0, this.program.ends[0]);
         let far = 0;
         this.all.forEach((state, index) => {
+          if (state.profile) {
+            const own = [guess[index]];
+            this.search(one, state, own, (_, off) => { if (!(off <= FOUND)) far = Math.max(far, CLOSED * 2); });
+            guess[index] = own[0];
+            return;
+          }
           const now = one.row(state.now, 0)[0];
           if (state.corrected) far = Math.max(far, Math.abs(this.away(state, now, guess[index])) || (now === now ? 0 : Infinity));
           guess[index] = state.corrected ? now : guess[index] + wrapped(now - guess[index]);
@@ -211,5 +306,5 @@
     }
   }
 
-  Object.assign(page, { States });
+  Object.assign(page, { States, Profile });
 })();
