@@ -10,6 +10,7 @@ import secrets
 import socket
 import tempfile
 import threading
+import time
 from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,6 +24,8 @@ from compoundkin.cli.shell import deferred_signals, say
 if TYPE_CHECKING:
     from compoundkin.studio.server import StudioServer
 
+# Seconds for which the address of a server that was killed is kept, for its windows.
+KEPT = 86_400.0
 START = """\
 # Drawn in the studio of compoundkin. See it with:  compoundkin report {name}
 format = 1
@@ -95,7 +98,33 @@ def _record(path: Path) -> Path | None:
     except OSError:
         return None
     is_own = not hasattr(os, "getuid") or (known.st_uid == os.getuid() and not known.st_mode & 0o077)
-    return folder / hashlib.sha256(os.fsencode(path.absolute())).hexdigest()[:32] if is_own else None
+    if not is_own:
+        return None
+    record = folder / hashlib.sha256(os.fsencode(path.absolute())).hexdigest()[:32]
+    _sweep(folder, record)
+    return record
+
+
+def _sweep(folder: Path, own: Path) -> None:
+    """Take away addresses of servers that were killed long ago, for whose windows nobody waits any more."""
+    for record in folder.iterdir():
+        with suppress(OSError, ValueError, TypeError, KeyError, OverflowError):
+            is_old = time.time() - record.stat().st_mtime > KEPT
+            if record != own and is_old and not _is_running(json.loads(record.read_text(encoding="utf-8"))["process"]):
+                record.unlink()
+
+
+def _is_running(process: int) -> bool:
+    """Return whether there is a process of a number; true where nobody can tell without ending it."""
+    if os.name == "nt":
+        return True
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        pass
+    return True
 
 
 def _address(host: str, record: Path | None) -> tuple[socket.socket, str]:
@@ -119,7 +148,7 @@ def _keep(record: Path | None, port: int, token: str) -> None:
             record.unlink(missing_ok=True)
             handle = os.open(record, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
             with os.fdopen(handle, "w", encoding="utf-8") as file:
-                json.dump({"port": port, "token": token}, file)
+                json.dump({"port": port, "token": token, "process": os.getpid()}, file)
 
 
 async def _serve(server: Any, listener: socket.socket, served: StudioServer) -> None:

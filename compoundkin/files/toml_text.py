@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
 from types import MappingProxyType
@@ -129,11 +129,17 @@ def _key(key: str) -> str:
     return tomli_w.dumps({key: 0})[: -len(" = 0\n")]
 
 
-def changed(text: str, wanted: Mapping[str, Any], syntax: str = "toml", written: Mapping[Way, str] = NOTHING) -> str:
+def changed(
+    text: str,
+    wanted: Mapping[str, Any],
+    syntax: str = "toml",
+    written: Mapping[Way, str] = NOTHING,
+    read: Callable[[str], Any] | None = None,
+) -> str:
     """Return a text of TOML or JSON changed so that it says what is wanted; comments, layout and line ends stay.
 
-    `written` are values as they shall stand in the text, by the keys and places in arrays that lead to them. Raises
-    InvalidInput where the text alone cannot be changed so, such as a table written in several places.
+    `written` are values as they shall stand in the text, by the keys and places in arrays that lead to them; `read`
+    reads a text where somebody has read it already. Raises InvalidInput where the text alone cannot be changed so, such as a table written in several places.
 
     >>> print(changed("a = 1  # one\\nb = [1, 2]\\n", {"a": 2, "b": [1, 2, 3]}))
     a = 2  # one
@@ -142,7 +148,7 @@ def changed(text: str, wanted: Mapping[str, Any], syntax: str = "toml", written:
     >>> changed('{"a": 1, "b":  [1]}', {"a": 2, "b": [1]}, "json", {("a",): "2.0"})
     '{"a": 2.0, "b":  [1]}'
     """
-    read = tomllib.loads if syntax == "toml" else json.loads
+    read = read or (tomllib.loads if syntax == "toml" else json.loads)
     old = read(text)
     if old == wanted:
         return text

@@ -175,11 +175,17 @@ def syntax_of(text: str) -> Syntax:
     return "json" if text.lstrip().startswith("{") else "toml"
 
 
-# A document is asked for its structure, its motion, the next edit: it is read once.
+# A document is made by an edit, asked for its structure, its motion, the next edit: it is parsed and read once.
+@lru_cache(maxsize=4)
+def document_of(text: str) -> Document:
+    """Return the document of a text, which nobody changes. Raises InvalidMechanism for what is neither TOML nor JSON."""
+    return parsed(text, syntax_of(text), "")
+
+
 @lru_cache(maxsize=4)
 def reading_of(text: str) -> Reading:
     """Read a document as far as it goes. Raises InvalidMechanism for a text that is neither TOML nor JSON."""
-    whole = parsed(text, syntax_of(text), "")
+    whole = document_of(text)
     if isinstance(links := whole.get("links"), dict) and len(links) > MOST_LINKS:
         raise InvalidInput(
             Problem("links", f"there are more than {MOST_LINKS} links", "take the command line for them")
@@ -718,7 +724,8 @@ def _edited(document: str, question: Mapping[str, Any]) -> Reply:
         changed_dimensions(_shown(reading), wanted, _numbers(edit.get("values")), pose)
     else:
         made = edited(wanted, edit, drawing)
-    return {"text": toml_text.changed(document, wanted, syntax_of(document)), "made": made, "problems": []}
+    text = toml_text.changed(document, wanted, syntax_of(document), read=document_of)
+    return {"text": text, "made": made, "problems": []}
 
 
 def _numbers(values: Any) -> dict[str, float]:

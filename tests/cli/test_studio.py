@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import http.client
 import json
+import os
 import re
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -18,6 +20,7 @@ import pytest
 from click.testing import CliRunner
 
 from compoundkin.cli import cli
+from compoundkin.cli import studio
 from compoundkin.cli.studio import opened
 from compoundkin.errors import InvalidInput
 from compoundkin.files.shipped_mechanisms import resolve
@@ -216,6 +219,27 @@ def test_one_that_was_killed_comes_back_at_its_address(tmp_path: Path, monkeypat
     finally:
         again.end()
         first.end()
+
+
+def test_addresses_of_servers_that_were_killed_long_ago_are_swept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not those of today, for whose windows they are kept, nor of who runs, nor what is no address."""
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr(tempfile, "tempdir", None)
+    own = studio._record(tmp_path / "mine.toml")
+    assert own is not None
+    gone = subprocess.Popen([sys.executable, "-c", ""])
+    gone.wait()
+    others = {"old": (gone.pid, 2), "today": (gone.pid, 0), "runs": (os.getpid(), 2), own.name: (gone.pid, 2)}
+    for name, (process, days) in others.items():
+        record = own.parent / name
+        record.write_text(json.dumps({"port": 1, "token": "t", "process": process}))
+        os.utime(record, (time.time() - 86_500 * days,) * 2)
+    (own.parent / "broken").write_text("{")
+    os.utime(own.parent / "broken", (0, 0))
+    assert studio._record(tmp_path / "mine.toml") == own
+    assert {one.name for one in own.parent.iterdir()} == {"today", "runs", "broken", own.name}
 
 
 def test_what_it_begins_with(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

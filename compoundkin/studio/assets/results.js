@@ -126,11 +126,11 @@ export class Results {
   }
 
   show_plots({ picture }) {
-    return [element("img", "", { src: picture, alt: `Plot of ${this.chosen.join(", ")}`, class: "paper" })];
+    return [element("img", "", { src: picture, alt: `Plot of ${this.chosen.join(", ")}`, class: "plotted" })];
   }
 
   show_circuits({ picture, html }) {
-    return [element("img", "", { src: picture, alt: "Circuits over the driver", class: "paper" }), fragment(html)];
+    return [element("img", "", { src: picture, alt: "Circuits over the driver", class: "plotted" }), fragment(html)];
   }
 
   show_configurations({ configurations, words }) {

@@ -407,6 +407,8 @@ export class Studio {
     on("open", () => this.results.open());
     on("copy", () => this.results.copy());
     on("export", () => this.results.exports());
+    on("more", () => this.#more(this.part("more").getAttribute("aria-expanded") !== "true"));
+    for (const one of ["open", "copy", "export"]) on(one, () => this.#more(false));
     on("fit", () => this.canvas.fit());
     on("play", () => this.play());
     on("home", () => { this.halt(); this.canvas.pose = null; this.canvas.draw(); this.#driver(); });
@@ -424,8 +426,12 @@ export class Studio {
     });
     const { signal } = this.ended;
     (this.alone ? document : this.root).addEventListener("keydown", (event) => this.#key(event), { signal });
+    document.addEventListener("pointerdown", (event) => { if (!event.composedPath().includes(this.part("more").parentElement)) this.#more(false); }, { signal, capture: true });
     if (this.alone) addEventListener("beforeunload", (event) => { if (this.text !== this.saved && this.history.length > 1) event.preventDefault(); }, { signal });
   }
+
+  // the menu of what is rare, where the window is too narrow for it
+  #more(isOpen) { this.part("more").setAttribute("aria-expanded", String(isOpen)); }
 
   #key(event) {
     const key = event.key.toLowerCase(), isCommand = event.ctrlKey || event.metaKey;
@@ -443,6 +449,7 @@ export class Studio {
     else if (key === "n") this.gestures.bar();
     else if (key === "f") this.canvas.fit();
     else if (key === " ") this.play();
+    else if (key === "escape" && this.part("more").getAttribute("aria-expanded") === "true") { this.#more(false); this.part("more").focus(); }
     else if (key === "escape") {
       this.gestures.stop();
       this.canvas.chosen = null;
