@@ -139,7 +139,8 @@ def changed(
     """Return a text of TOML or JSON changed so that it says what is wanted; comments, layout and line ends stay.
 
     `written` are values as they shall stand in the text, by the keys and places in arrays that lead to them; `read`
-    reads a text where somebody has read it already. Raises InvalidInput where the text alone cannot be changed so, such as a table written in several places.
+    reads a text where somebody has read it already. Raises InvalidInput where the text alone cannot be changed so, such
+    as a table written in several places.
 
     >>> print(changed("a = 1  # one\\nb = [1, 2]\\n", {"a": 2, "b": [1, 2, 3]}))
     a = 2  # one

@@ -49,6 +49,7 @@ from compoundkin.studio.findings import (
     DrivenStructure,
     Reply,
     changed_dimensions,
+    chosen_branch,
     chosen_configuration,
     rounded_row,
 )
@@ -178,7 +179,7 @@ def syntax_of(text: str) -> Syntax:
 # A document is made by an edit, asked for its structure, its motion, the next edit: it is parsed and read once.
 @lru_cache(maxsize=4)
 def document_of(text: str) -> Document:
-    """Return the document of a text, which nobody changes. Raises InvalidMechanism for what is neither TOML nor JSON."""
+    """Return the document of a text, which nobody changes. Raises InvalidMechanism for neither TOML nor JSON."""
     return parsed(text, syntax_of(text), "")
 
 
@@ -719,6 +720,10 @@ def _edited(document: str, question: Mapping[str, Any]) -> Reply:
         wanted["drawn"] = chosen_configuration(_shown(reading), str(edit.get("name")), pose)
         wanted.pop("modes", None)
         made: Reply = {}
+    elif edit.get("do") == "branch":
+        wanted["drawn"], there = chosen_branch(_shown(reading), edit.get("number"), pose)
+        wanted.pop("modes", None)
+        made = {"pose": there}
     elif edit.get("do") == "dimensions":
         made = {}
         changed_dimensions(_shown(reading), wanted, _numbers(edit.get("values")), pose)

@@ -13,24 +13,34 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import floor, isfinite, log10
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from compoundkin.base.arrays import Number
+from compoundkin.base.arrays import Number, wrapped
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.base.suffixes import SUFFIXES, suffix_for
 from compoundkin.base.suffixes import Kind as FileKind
+from compoundkin.dynamics.force_analysis import loaded_forces
+from compoundkin.dynamics.forces import Forces
 from compoundkin.kinematics import Motion, solve
-from compoundkin.model.attributes import AXES, TABULATED, VELOCITY, Kind
+from compoundkin.model.attributes import DEGREE_SIGN, EFFORT, FORCE, TABULATED, VELOCITY, Kind
+from compoundkin.model.definition import CYLINDERS
 from compoundkin.model.geometry import FRAME
+from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure import Structure
-from compoundkin.studio.edited_document import written_place
+from compoundkin.studio.edited_document import called, written_place
+
+if TYPE_CHECKING:
+    from compoundkin.programs.dimensions import FreeDimension
+    from compoundkin.view.sketch.force_arrows import ForceCourse
 
 Reply: TypeAlias = dict[str, Any]
 
 # So many configurations have a picture; of more links than these instant centres are not shown.
 MOST_PICTURES, MOST_CENTRES = 24, 12
+# So many branches of circuits can be clicked.
+MOST_BRANCHES = 64
 # So many plots are drawn at once.
 MOST_PLOTS = 8
 # Numbers on the canvas are told with so many digits of the mechanism's size: less than a thousandth of a dot.
@@ -54,6 +64,11 @@ class DrivenStructure:
         if self.structure.faults or not self.structure.mechanism.drives:
             raise InvalidInput(Problem("", "it does not move yet", "mend what is missing"))
         return solve(self.structure, self.values)
+
+    @cached_property
+    def forces(self) -> Forces | None:
+        """The forces under the loads of the file; None where nothing acts. Raises what `force_analysis` does."""
+        return loaded_forces(self.motion)
 
     def at(self, pose: object) -> dict[str, float]:
         """Return the drivers' values at a pose of the window, at the first assembled one without it."""
@@ -83,22 +98,25 @@ def dimensions(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
 def changed_dimensions(
     shown: DrivenStructure, document: dict[str, Any], values: Mapping[str, float], pose: object
 ) -> None:
-    """Change dimensions in a document: coordinates of links that have some, and the drawing.
+    """Change dimensions in a document: coordinates of links that have some, numbers of pairs, and the drawing.
 
     Links of letters alone take theirs off the drawing: it becomes that of the pose that is shown, all other dimensions
     as they are. Raises InvalidInput where it cannot be assembled so, UnknownName for what is no dimension.
     """
-    from compoundkin.programs.dimensions import with_dimensions
+    from compoundkin.programs.dimensions import StatedDimensions, with_dimensions
 
     mechanism = shown.structure.mechanism
     changed = with_dimensions(mechanism, values)
     digits = EXACT - floor(log10(mechanism.geometry.size))
-
-    for link in dict.fromkeys(name.partition(".")[0] for name in values):
-        points = document["links"][link].get("points")
-        for letter in points if isinstance(points, dict) else ():
-            if any(f"{link}.{letter}.{axis}" in values for axis in AXES):
-                points[letter] = written_place(complex(np.ravel(changed.geometry.points[link][letter])[0]), digits)
+    known = StatedDimensions(mechanism, shown.motion.inputs.ends).known
+    for one in (known[name] for name in values):
+        if not one.is_of_link:
+            _write_number(document, changed, one, digits)
+            continue
+        points = document["links"][one.owner].get("points")
+        if isinstance(points, dict):
+            place = complex(np.ravel(changed.geometry.points[one.owner][one.word])[0])
+            points[one.word] = written_place(place, digits)
     if "drawn" not in document:
         return
     motion = solve(changed, shown.at(pose), order=0)
@@ -109,6 +127,36 @@ def changed_dimensions(
     for letter in document["drawn"]:
         if letter in motion.points:
             document["drawn"][letter] = written_place(complex(np.ravel(motion.points[letter].position)[0]), digits)
+
+
+def _write_number(document: dict[str, Any], changed: Mechanism, one: FreeDimension, digits: int) -> None:
+    """Write a pair's number into its table, as a file of the changed mechanism has it."""
+    from compoundkin.files.writer import document as written
+    from compoundkin.model.pairs import pairs_among
+
+    items = {pair.name: pair for pair in pairs_among(changed.items)}
+    array = items[one.owner].table if one.owner in items else CYLINDERS
+    names = [name for name, pair in items.items() if pair.table == array] or list(changed.cylinders)
+    value = written(changed)[array][names.index(one.owner)].get(one.word)
+    for table in document.get(array, ()):
+        if called(table, array) == one.owner:
+            table[one.word] = _neat(value, digits)
+            if value is None:
+                del table[one.word]
+            return
+    raise UnknownName(Problem(one.name, "it is not written in the text", "change it in the text"))
+
+
+def _neat(value: Any, digits: int) -> Any:
+    """Return numbers without the rounding of what has been computed."""
+    if isinstance(value, list):
+        return [_neat(one, digits) for one in value]
+    if isinstance(value, dict):
+        return {key: _neat(one, digits) for key, one in value.items()}
+    if not isinstance(value, float):
+        return value
+    found = round(value, digits) + 0.0
+    return int(found) if found.is_integer() and abs(found) < 10**EXACT else found
 
 
 # --- reports ------------------------------------------------------------------------------------------------
@@ -132,7 +180,7 @@ def results(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
     moves = not shown.structure.faults and bool(mechanism.drives)
     return {
         "sections": sections,
-        "quantities": list(_quantities(shown.motion)) if moves else [],
+        "quantities": [*_quantities(shown.motion), *_figures(shown.forces)] if moves else [],
         "outputs": list(mechanism.outputs) if moves else [],
         "verdict": found.outcome.verdict,
         "problems": [],
@@ -158,6 +206,13 @@ def _quantities(motion: Motion) -> Iterator[str]:
             yield from (f"{name}.{word}" for word in TABULATED[kind][:ORDERS])
 
 
+def _figures(found: Forces | None) -> Iterator[str]:
+    """Yield the names of what drivers and pairs bear."""
+    if found is not None:
+        yield from (f"{name}.{EFFORT}" for name in found.drives)
+        yield from (f"{name}.{FORCE}" for name in found.pairs)
+
+
 def plots(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
     """Reply a plot of quantities, an SVG picture."""
     from compoundkin.view.plot import plot
@@ -165,7 +220,23 @@ def plots(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
     names = question.get("names")
     if not isinstance(names, list) or not all(isinstance(one, str) for one in names) or len(names) > MOST_PLOTS:
         raise InvalidInput(Problem("names", "these are no names of quantities", f"give at most {MOST_PLOTS}"))
-    return {"picture": _image(plot(shown.motion, *names).content("svg")), "problems": []}
+    return {"picture": _image(plot(shown.forces or shown.motion, *names).content("svg")), "problems": []}
+
+
+def forces(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
+    """Reply what the drivers and the pairs bear under the loads of the file: plots and the section of the report."""
+    from compoundkin.view.page.html_blocks import plain_sections
+    from compoundkin.view.plot import plot
+    from compoundkin.view.report.forces_section import forces_report
+
+    if (found := shown.forces) is None:
+        what, remedy = "nothing acts on it", "write units, masses and loads into the text: docs, Forces"
+        raise InvalidInput(Problem("", what, remedy))
+    efforts = [one for one in _figures(found) if one.endswith(EFFORT)]
+    pairs = [f"{one}.length" for one in _figures(found) if one.endswith(FORCE)]
+    html = "\n".join(map(_unstyled, plain_sections(forces_report(found).sections)))
+    pictures = [_image(plot(found, *names).content("svg")) for names in (efforts, pairs[:MOST_PLOTS]) if names]
+    return {"pictures": pictures, "html": html, "problems": []}
 
 
 def _image(svg: bytes | str) -> str:
@@ -213,7 +284,39 @@ def every_circuit(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
     others = {name: value for name, value in at.items() if name != drivers[0]}
     found = circuits(shown.structure, drivers[0], others)
     html = "\n".join(map(_unstyled, plain_sections(circuits_report(found).sections)))
-    return {"picture": _image(circuits_plot(found).content("svg")), "html": html, "problems": []}
+    is_angle = shown.structure.driven_angles[drivers[0]]
+    branches = [
+        {
+            "number": one.number,
+            "circuit": one.circuit,
+            "name": one.name,
+            "range": [float(np.rad2deg(end) if is_angle else end) for end in (one.low, one.high)],
+            "is_shown": found.start is not None and found.start.branch == one.number,
+        }
+        for one in found.branches[:MOST_BRANCHES]
+    ]
+    unit = DEGREE_SIGN if is_angle else shown.structure.mechanism.unit
+    picture = _image(circuits_plot(found).content("svg"))
+    return {"picture": picture, "html": html, "branches": branches, "unit": unit, "problems": []}
+
+
+def chosen_branch(shown: DrivenStructure, number: object, pose: object) -> tuple[dict[str, list[float]], int]:
+    """Return where all points are in the middle of a branch, and which pose of the window is nearest to that.
+
+    Raises UnknownName.
+    """
+    from compoundkin.configurations.circuit_search import circuits
+
+    at, driver = shown.at(pose), next(iter(shown.motion.drives))
+    found = circuits(shown.structure, driver, {name: value for name, value in at.items() if name != driver})
+    branch = next((one for one in found.branches if one.number == number), None)
+    if branch is None:
+        raise UnknownName(Problem(str(number), "there is no such branch", f"they are 1 to {len(found.branches)}"))
+    digits = EXACT - floor(log10(shown.structure.mechanism.geometry.size))
+    away = np.ravel(shown.motion.inputs.drives[driver][0]) - (branch.low + branch.high) / 2
+    away = wrapped(away) if shown.structure.driven_angles[driver] else away
+    places = {letter: written_place(place, digits) for letter, place in branch.configuration.points.items()}
+    return places, int(np.argmin(np.abs(away)))
 
 
 def overlays(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
@@ -234,6 +337,7 @@ def overlays(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
             place = np.broadcast_to(centres[pair].point, motion.failed.shape)[0]
             found[", ".join(pair)] = [rounded_row(place.real, fine), rounded_row(place.imag, fine)]
     return {
+        "forces": _arrows(shown.forces) if shown.forces is not None else None,
         "velocities": {
             k: [rounded_row(v.real / fastest, DIGITS), rounded_row(v.imag / fastest, DIGITS)] for k, v in moving.items()
         }
@@ -242,6 +346,35 @@ def overlays(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
         "centres": found,
         "problems": [],
     }
+
+
+def _arrows(found: Forces) -> Reply:
+    """Return the forces at each pose in parts of the greatest of all, and moments in parts of the greatest of each."""
+    from compoundkin.view.sketch.force_arrows import drawn_force_courses, drawn_moment_courses
+    from compoundkin.view.sketch.kinematic_sketch import moving_sketch
+
+    scene, fine = moving_sketch(found.motion, 0).scene, DIGITS - floor(log10(found.motion.size))
+    arrows, arcs = (drawn(found, scene, 0) for drawn in (drawn_force_courses, drawn_moment_courses))
+    greatest = max((float(np.nanmax(np.abs(one.force), initial=0.0)) for one in arrows), default=0.0)
+
+    def placed(one: ForceCourse) -> Reply:
+        at = [rounded_row(one.at.real, fine), rounded_row(one.at.imag, fine)]
+        return {"at": at, "kind": one.shown.kind, "words": one.shown.description}
+
+    def force(one: ForceCourse) -> list[Any]:
+        return [rounded_row(part / greatest, DIGITS) for part in (one.force.real, one.force.imag)]
+
+    return {
+        "arrows": [
+            {**placed(one), "name": one.shown.name, "force": force(one)} for one in arrows if greatest
+        ],
+        "arcs": [
+            {**placed(one), "name": one.shown.turning, "moment": rounded_row(one.moment / top, DIGITS)}
+            for one in arcs if (top := float(np.nanmax(np.abs(one.moment), initial=0.0)))
+        ],
+        "greatest": greatest,
+        "unit": found.units.force,
+    }  # fmt: skip
 
 
 def rounded_row(values: Number, digits: int) -> list[float | None]:
@@ -343,6 +476,7 @@ OF_MECHANISMS: Mapping[str, Callable[[DrivenStructure, Mapping[str, Any]], Reply
     "plots": plots,
     "configurations": every_configuration,
     "circuits": every_circuit,
+    "forces": forces,
     "overlays": overlays,
     "export": exported,
 }

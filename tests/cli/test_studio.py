@@ -19,8 +19,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
-from compoundkin.cli import cli
-from compoundkin.cli import studio
+from compoundkin.cli import cli, studio
 from compoundkin.cli.studio import opened
 from compoundkin.errors import InvalidInput
 from compoundkin.files.shipped_mechanisms import resolve

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from base64 import b64decode, b64encode
 from typing import Any
 
@@ -11,6 +12,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.files.mechanism_files import dumps, loads
 from compoundkin.studio import answer
+from compoundkin.studio.answers import _shown, reading_of
 from tests.studio.test_answers import FOUR_BAR, START, edited, shipped_text
 
 pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
@@ -165,3 +167,57 @@ def test_dimensions_that_cannot_be_are_refused() -> None:
         found = answer(text, {"ask": "edit", "edit": {"do": "dimensions", "values": values}})
         assert found["text"] == text
         assert found["problems"], values
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "pose"),
+    [
+        ("slider-crank", {"stroke.angle": 0.1}, 40),
+        ("disc-cam-offset-roller", {"guide.offset": 9.5, "roller/cam.radius": 7.0}, 3),
+        ("hydraulic-digger", {"boom-cylinder.stroke.1": 1.4}, 2),
+    ],
+)
+def test_numbers_of_pairs_are_changed_where_they_are_written(name: str, values: dict[str, float], pose: int) -> None:
+    """The file then solves as the mechanism with those numbers; nothing else of it changes but the drawing."""
+    text = shipped_text(name)
+    new = edited(text, {"do": "dimensions", "values": values}, pose=pose)
+    before, after = (re.sub(r"(?s)\n\[drawn\].*?(?=\n\[|\Z)", "", one).splitlines() for one in (text, new))
+    assert len([one for one in before if one not in after]) == len(values)
+    changed, expected = loads(new), ck.with_dimensions(loads(text), values)
+    one, other = (ck.solve(m, _shown(reading_of(text)).values, order=0) for m in (changed, expected))
+    for letter in one.points:
+        np.testing.assert_allclose(one.points[letter].position, other.points[letter].position, atol=1e-9 * one.size)
+
+
+def test_a_branch_that_is_chosen_is_drawn_in_its_middle() -> None:
+    """A triple rocker's two branches: the driver is taken to the middle of the range, and the loop is closed there."""
+    text = answer("", {"ask": "open", "name": "four-bar:70,40,50,30"})["text"]
+    branches = answer(text, {"ask": "circuits"})["branches"]
+    assert [one["is_shown"] for one in branches].count(True) == 1
+    for one in branches:
+        found = answer(text, {"ask": "edit", "edit": {"do": "branch", "number": one["number"]}})
+        again = answer(found["text"], {"ask": "circuits"})["branches"]
+        assert [two["is_shown"] for two in again] == [two["number"] == one["number"] for two in branches]
+        driver = answer(text, {"ask": "motion"})["drives"]["crank"]["values"][found["made"]["pose"]]
+        assert (driver - sum(one["range"]) / 2 + 180) % 360 - 180 == pytest.approx(0, abs=3)
+    refused = answer(text, {"ask": "edit", "edit": {"do": "branch", "number": 99}})
+    assert "no such branch" in refused["problems"][0]["what"]
+
+
+def test_forces_are_those_of_the_analysis() -> None:
+    """At each pose, to the digits of the canvas; where nothing acts, it is said how something can."""
+    text = shipped_text("toggle-press-loaded")
+    shown = answer(text, {"ask": "overlays"})["forces"]
+    motion = ck.solve(loads(text), _shown(reading_of(text)).values)
+    analysed = ck.force_analysis(motion)
+    known = {one["words"]: one for one in shown["arrows"]}
+    x, y = np.array(known["pair O on crank by frame"]["force"], float) * shown["greatest"]
+    sign = 1 if analysed.pairs["O"].pair.members[1] == "crank" else -1
+    np.testing.assert_allclose(x + 1j * y, sign * np.ravel(analysed.pairs["O"].force), atol=1e-5 * shown["greatest"])
+    load = np.hypot(*np.array(known["force work on slider"]["force"], float)) * shown["greatest"]
+    (own,) = analysed.on("slider").of_kind("force")
+    assert load.max() == pytest.approx(np.abs(own.force).max(), rel=1e-5)
+    found = reply(text, "forces")
+    assert (len(found["pictures"]), "crank" in found["html"]) == (2, True)
+    assert "crank.effort" in answer(text, {"ask": "results"})["quantities"]
+    assert "nothing acts" in answer(shipped_text("six-bar"), {"ask": "forces"})["problems"][0]["what"]

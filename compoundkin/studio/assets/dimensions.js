@@ -32,7 +32,8 @@ export class Dimensions {
     const size = page.sizeOf(reply.live.dimensions), of = (name) => this.own[this.index.get(name)];
     const panel = { size, unit: studio.unit, own: of, fixed: reply.live.panel.fixed };
     const rows = reply.live.panel.links.flatMap(({ name, rows: told }) => told.map((one) => new page.PointRow(panel, name, one)).filter((row) => !row.late));
-    this.#rows(rows, "");
+    const numbers = reply.live.panel.pairs.flatMap(({ name, rows: told }) => told.map((one) => new page.NumberRow(panel, name, one)));
+    this.#rows([...rows, ...numbers], "");
   }
 
   // fields stay where the rows are the same, so that who types goes on typing

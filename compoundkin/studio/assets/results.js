@@ -4,7 +4,8 @@ import { element, fragment, labelled, parts } from "./elements.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const LONGEST = 110, DOT = 4; // pixels: the longest velocity, the dot of a centre
-const COLOUR = { centres: "var(--bad)", velocities: "var(--good)" };
+const COLOUR = { centres: "var(--bad)", velocities: "var(--good)", load: "var(--bad)", force: "var(--ink)" };
+const SWEEP = 2.6, ROUND = 20, FAINT = 0.02; // the arc of a moment, and parts of the greatest that are not drawn
 
 const drawn = (name, attributes, parent) => {
   const node = document.createElementNS(SVG, name);
@@ -35,7 +36,7 @@ export class Results {
   #build() {
     const box = this.part("results");
     this.panels = {};
-    for (const [ask, title] of [["plots", "Plots"], ["configurations", "Configurations"], ["circuits", "Circuits"], ["results", "Report"]]) {
+    for (const [ask, title] of [["plots", "Plots"], ["configurations", "Configurations"], ["circuits", "Circuits"], ["forces", "Forces"], ["results", "Report"]]) {
       const body = element("div", "", { class: "found" });
       const panel = element("details", "", { id: `results-${ask}` }, element("summary", title), body);
       panel.addEventListener("toggle", () => { if (panel.open) this.#ask(ask); });
@@ -44,7 +45,7 @@ export class Results {
     }
     const switches = element("div", "", { class: "bar switches", role: "group", "aria-label": "On the canvas" });
     this.switches = {};
-    for (const [name, title] of [["paths", "Paths"], ["velocities", "Velocities"], ["centres", "Instant centres"]]) {
+    for (const [name, title] of [["paths", "Paths"], ["velocities", "Velocities"], ["centres", "Instant centres"], ["forces", "Forces"]]) {
       const button = element("button", title, { id: `show-${name}`, "aria-pressed": String(name === "paths") });
       button.addEventListener("click", () => this.#toggle(name, button));
       this.switches[name] = button;
@@ -63,7 +64,7 @@ export class Results {
     for (const [ask, { panel, body }] of Object.entries(this.panels)) {
       if (panel.open) { body.setAttribute("aria-busy", "true"); this.#ask(ask); } else body.replaceChildren();
     }
-    if (this.isOn("velocities") || this.isOn("centres")) this.#overlays();
+    if (["velocities", "centres", "forces"].some((one) => this.isOn(one))) this.#overlays();
   }
 
   // another pose is shown: configurations are those of its driver
@@ -129,8 +130,25 @@ export class Results {
     return [element("img", "", { src: picture, alt: `Plot of ${this.chosen.join(", ")}`, class: "plotted" })];
   }
 
-  show_circuits({ picture, html }) {
-    return [element("img", "", { src: picture, alt: "Circuits over the driver", class: "plotted" }), fragment(html)];
+  // each branch is a range of the driver, which takes the mechanism there when it is clicked
+  show_circuits({ picture, html, branches, unit }) {
+    const low = Math.min(...branches.map(({ range }) => range[0])), high = Math.max(...branches.map(({ range }) => range[1]));
+    const told = (one) => `${Number(one.toPrecision(5))}${unit === "°" ? unit : ` ${unit}`}`, part = (one) => (100 * (one - low)) / (high - low || 1);
+    const ranges = branches.map(({ number, circuit, name, range: [from, to], is_shown: isShown }) => {
+      const bar = element("span", "", { class: "range" });
+      const button = element("button", "", { class: "branch", "aria-pressed": String(isShown), title: name }, element("span", `Circuit ${circuit}, branch ${number}: ${told(from)} to ${told(to)}`), bar);
+      // set by script, as the page's policy forbids styles that are written
+      Object.assign(bar.style, { marginLeft: `${part(from)}%`, width: `${Math.max(1, part(to) - part(from))}%` });
+      button.addEventListener("click", () => { this.studio.halt(); this.studio.edit({ do: "branch", number }); });
+      return button;
+    });
+    return [element("div", "", { class: "branches", role: "group", "aria-label": "Branches: a click goes there" }, ...ranges),
+      element("img", "", { src: picture, alt: "Circuits over the driver", class: "plotted" }), fragment(html)];
+  }
+
+  show_forces({ pictures, html }) {
+    const words = ["Efforts of the drivers", "Forces in the pairs"];
+    return [...pictures.map((src, k) => element("img", "", { src, alt: words[k], class: "plotted" })), fragment(html)];
   }
 
   show_configurations({ configurations, words }) {
@@ -166,6 +184,7 @@ export class Results {
     if (!reply) return;
     this.overlay = reply.problems?.length ? null : reply;
     if (reply.problems?.length) this.studio.say(reply.problems[0].what);
+    else if (this.isOn("forces") && !reply.forces) this.studio.say("Nothing acts on it: write units, masses and loads into the text");
     this.#draw();
   }
 
@@ -177,12 +196,10 @@ export class Results {
     if (this.isOn("velocities")) {
       for (const [letter, [vx, vy]] of Object.entries(this.overlay.velocities)) {
         const at = canvas.at(letter), v = [vx[k], vy[k]];
-        if (!at || v.includes(null) || Math.hypot(...v) < 1e-6) continue;
-        const tip = [at[0] + LONGEST * v[0], at[1] - LONGEST * v[1]], turned = Math.atan2(-v[1], v[0]);
-        const barb = (by) => `${tip[0] - 9 * Math.cos(turned + by)} ${tip[1] - 9 * Math.sin(turned + by)}`;
-        drawn("path", { d: `M${at.join(" ")}L${tip.join(" ")}M${barb(0.4)}L${tip.join(" ")}L${barb(-0.4)}`, class: "velocity", stroke: COLOUR.velocities }, this.layer);
+        if (at && !v.includes(null) && Math.hypot(...v) >= 1e-6) this.#arrow(at, v, "velocity", COLOUR.velocities);
       }
     }
+    if (this.isOn("forces") && this.overlay.forces) this.#forces(this.overlay.forces, k);
     if (this.isOn("centres")) {
       for (const [links, [xs, ys]] of Object.entries(this.overlay.centres)) {
         if (xs[k] === null || ys[k] === null) continue;
@@ -193,6 +210,45 @@ export class Results {
         drawn("title", {}, dot).textContent = `Instant centre of ${links}`;
         if (!isPin) drawn("text", { x: at[0] + 7, y: at[1] + 14, class: "centre-name" }, this.layer).textContent = links.split(", ").join("–");
       }
+    }
+  }
+
+  // from a place of the screen, in parts of the longest; returns its tip
+  #arrow(at, v, style, stroke) {
+    const tip = [at[0] + LONGEST * v[0], at[1] - LONGEST * v[1]], turned = Math.atan2(-v[1], v[0]);
+    const barb = (by) => `${tip[0] - 9 * Math.cos(turned + by)} ${tip[1] - 9 * Math.sin(turned + by)}`;
+    this.#outlined(`M${at.join(" ")}L${tip.join(" ")}M${barb(0.4)}L${tip.join(" ")}L${barb(-0.4)}`, style, stroke);
+    return tip;
+  }
+
+  // on paper, so that it is told from the bar that it lies on
+  #outlined(d, style, stroke) {
+    drawn("path", { d, class: `${style} under` }, this.layer);
+    drawn("path", { d, class: style, stroke }, this.layer);
+  }
+
+  // what acts at a pose: arrows to one scale, arcs of moments to none, each with its name, left of its tip, and its words
+  #forces({ arrows, arcs, greatest, unit }, k) {
+    const { canvas } = this.studio, known = ({ at: [xs, ys] }) => xs[k] !== null && canvas.screen([xs[k], ys[k]]);
+    const named = (text, words, [x, y]) => {
+      const node = drawn("text", { x, y, class: "force-name", "text-anchor": "middle" }, this.layer);
+      node.textContent = text;
+      drawn("title", {}, node).textContent = words;
+    };
+    for (const one of arrows) {
+      const at = known(one), v = [one.force[0][k], one.force[1][k]], long = Math.hypot(...v);
+      if (!at || v.includes(null) || long < FAINT) continue;
+      const tip = this.#arrow(at, v, "force", COLOUR[one.kind] ?? COLOUR.force), [c, s] = [v[0] / long, v[1] / long], away = 7 + 3 * one.name.length * Math.abs(s);
+      named(one.name, `${one.words}: ${Number((long * greatest).toPrecision(4))} ${unit}`, [tip[0] - away * s, tip[1] - 11 * c + 4]);
+    }
+    for (const one of arcs) {
+      const at = known(one), moment = one.moment[k];
+      if (!at || moment === null || Math.abs(moment) < FAINT) continue;
+      // counterclockwise is clockwise where y points downward
+      const sense = Math.sign(moment), on = (angle, r = ROUND) => [at[0] + r * Math.cos(angle), at[1] - r * Math.sin(angle)];
+      const [from, to] = [Math.PI / 4 - (sense * SWEEP) / 2, Math.PI / 4 + (sense * SWEEP) / 2], back = to - (sense * 9) / ROUND;
+      this.#outlined(`M${on(from).join(" ")}A${ROUND} ${ROUND} 0 0 ${sense > 0 ? 0 : 1} ${on(to).join(" ")}M${on(back, ROUND + 5).join(" ")}L${on(to).join(" ")}L${on(back, ROUND - 5).join(" ")}`, "force", COLOUR[one.kind] ?? COLOUR.force);
+      named(one.name, one.words, on(Math.PI / 4, ROUND + 14));
     }
   }
 

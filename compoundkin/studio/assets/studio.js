@@ -153,7 +153,7 @@ export class Studio {
       }
       const { made } = reply;
       if (made?.points?.length && edit.do !== "point") this.canvas.chosen = { point: made.points.at(-1) };
-      this.goTo = this.structure?.is_as_drawn ? null : pose;
+      this.goTo = made?.pose ?? (this.structure?.is_as_drawn ? null : pose);
       this.put(reply.text, false, reply.structure);
     }).finally(() => { this.edits -= 1; });
     return this.queue;

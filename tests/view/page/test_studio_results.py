@@ -28,7 +28,8 @@ def test_results_are_one_click_away(window: Any) -> None:
         view.locator(f"#results-{ask} {what}").first.wait_for()
     for name in ("velocities", "centres"):
         view.locator(f"#show-{name}").click()
-    seen.until("document.querySelectorAll('.velocity').length === 4 && document.querySelectorAll('.centre').length > 9")
+    seen.until("document.querySelectorAll('.velocity:not(.under)').length === 4")
+    seen.until("document.querySelectorAll('.centre').length > 9")
     # another configuration, by a click: the drawing chooses it, one entry in the history
     before = seen.text
     view.locator(".thumbnail[aria-pressed=false]").first.click()
@@ -99,6 +100,29 @@ def test_dimensions_change_in_the_browser_alone(window: Any) -> None:
     seen.view.mouse.up()
     seen.until(f"studio.isSettled && studio.wire.count > {sent} && studio.canvas.motion !== null")
     assert seen.value("studio.canvas.motion.points.G[0][200]") == pytest.approx(held, abs=0.2)
+    assert seen.complaints == []
+
+
+def test_pairs_circuits_and_forces_are_one_click_away(window: Any) -> None:
+    """A number of a pair is typed and seen at once; a branch takes drawing and driver along; forces are drawn."""
+    seen = window(shipped_text("toggle-press-loaded"))
+    view = seen.view
+    field = view.locator("#dimensions input[aria-label='angle of press']")
+    field.fill("5")
+    here = seen.value("studio.canvas.motion.points.D.map((one) => one[90])")
+    field.press("Enter")
+    seen.until("studio.isSettled && studio.text.includes('angle = 5') && studio.dimensions.path !== null")
+    crank = np.deg2rad(seen.value("studio.canvas.motion.drives.crank.values[90]"))
+    solved = ck.solve(loads(seen.text), {"crank": [crank]}, order=0).points["D"].position
+    assert complex(*here) == pytest.approx(complex(np.ravel(solved)[0]), abs=1e-6)
+    view.locator("#show-forces").click()
+    seen.until("document.querySelectorAll('.force:not(.under)').length > 5")
+    assert seen.value("document.querySelectorAll('.force-name').length") > 5
+    before = seen.value("studio.canvas.at('B')")
+    view.locator("#results-circuits > summary").click()
+    view.locator(".branch[aria-pressed=false]").first.click()
+    seen.until("studio.isSettled && document.querySelector('.branch').ariaPressed === 'true'")
+    assert seen.value("studio.canvas.at('B')") != pytest.approx(before, abs=5)
     assert seen.complaints == []
 
 
