@@ -32,6 +32,7 @@ from compoundkin.dimensional.motion_generation import (
     three_poses,
 )
 from compoundkin.dimensional.path_generation import mixed_positions, path_points
+from compoundkin.dimensional.sampled_functions import sampled_function
 from compoundkin.dimensional.tasks import (
     ACCURACY,
     COMPACTNESS,
@@ -70,6 +71,7 @@ METHODS: tuple[Method, ...] = (
     Method(PoseTask, four_poses, lambda task: task.count == 4),
     Method(PoseTask, three_poses, lambda task: task.count == 3),
     Method(PoseTask, many_poses, lambda task: task.count > 5 and len(task.z) == task.count),
+    Method(FunctionTask, sampled_function, lambda task: task.links > 0),
     Method(FunctionTask, exact_function, lambda task: len(task.inputs) <= 5),
     Method(FunctionTask, approached_function),
     Method(SwingTask, crank_rocker),

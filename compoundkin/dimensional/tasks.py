@@ -216,7 +216,8 @@ class FunctionTask(Task):
 
     `linkage` is "four-bar" (outputs are angles), "slider-crank" (displacements) or "inverted" (angles of a swinging
     block). Angles and displacements count from where the input is zero, at unknown places, unless they are
-    `absolute`. `whole` is the function over its range, pairs (m, 2), over which the error of answers counts.
+    `absolute`. `whole` is the function over its range, pairs (m, 2), over which the error of answers counts. With
+    `links` it is followed by linkages of at most so many links, of an atlas.
     """
 
     inputs: Number
@@ -224,10 +225,14 @@ class FunctionTask(Task):
     linkage: str = "four-bar"
     absolute: bool = False
     whole: Number = None
+    links: int = 0
 
     @property
     def in_words(self) -> str:
         """The task as a phrase."""
+        if self.links:
+            kind = "a displacement" if self.linkage == "slider-crank" else "an angle"
+            return f"{kind} that follows {count_phrase(len(self.inputs), 'pair')}"
         return f"a {self.linkage} function of {count_phrase(len(self.inputs), 'pair')}"
 
 
@@ -410,6 +415,7 @@ def function(
     count: int = 3,
     linkage: str = "four-bar",
     absolute: bool = False,
+    links: int | None = None,
     tolerance: float = 0.0,
 ) -> FunctionTask:
     """Return the task of function generation: pairs (n, 2) of an input angle and an output.
@@ -422,6 +428,11 @@ def function(
     guide); angles are radians. Only differences of angles and displacements count, unless they are `absolute`: angles
     from the line of fixed pivots then, displacements from the crank's pivot. Three pairs are met by `absolute` ones,
     up to five by others; more, and all with a `tolerance`, are approached.
+
+    With `links`, 4 or 6, eight pairs or more are samples of a function, over a whole turn or a part of it, with gaps
+    where nothing is wanted. Linkages of an atlas with at most so many links follow it, whose crank turns fully:
+    the output is a link that swings, or with "slider-crank" a slide. Dwells and strokes of even speed are of this
+    kind.
 
     >>> function([(0, 0), (0.5, 0.3), (1, 0.8)]).in_words
     'a four-bar function of 3 pairs'
@@ -442,8 +453,41 @@ def function(
     if found.ndim != 2 or found.shape[1] != 2 or len(found) < 3:
         raise InvalidInput(Problem("pairs", "they are no three or more pairs", "give (input, output) for each"))
     _finite("pairs", found)
+    if links is not None:
+        found = _samples(found if whole is None else whole, links, linkage, absolute)
     _different("pairs", "input", np.exp(1j * found[:, :1]))
-    return FunctionTask(found[:, 0], found[:, 1], linkage, absolute, whole, tolerance=_tolerance(tolerance))
+    return FunctionTask(
+        found[:, 0],
+        found[:, 1],
+        linkage,
+        absolute,
+        None if links else whole,
+        links or 0,
+        tolerance=_tolerance(tolerance),
+    )
+
+
+def _samples(pairs: Number, links: int, linkage: str, absolute: bool) -> Number:
+    """Return the samples of a function without the end of a whole turn. Raises InvalidInput for what is no function."""
+    if links not in (4, 6):
+        raise InvalidInput(Problem("links", f"linkages of {links} links are not in the atlas", "take 4 or 6"))
+    if linkage == "inverted" or absolute:
+        what = "linkages of the atlas have no absolute angles and no swinging guide"
+        raise InvalidInput(Problem("links", what, 'leave links out, or take "four-bar" or "slider-crank"'))
+    if len(pairs) < FEWEST_OF_CURVE:
+        what = f"{count_phrase(len(pairs), 'pair')} are no samples of a function"
+        raise InvalidInput(Problem("pairs", what, f"give {FEWEST_OF_CURVE} or more, or leave links out"))
+    ordered = pairs[np.argsort(pairs[:, 0], kind="stable")]
+    around, stroke = ordered[-1, 0] - ordered[0, 0], float(np.ptp(ordered[:, 1]))
+    if stroke == 0.0:
+        raise InvalidInput(Problem("pairs", "the output does not move", "a function has different outputs"))
+    if around > 2.0 * np.pi * (1.0 + SAME):
+        raise InvalidInput(Problem("pairs", "they go beyond a turn", "give inputs within one turn"))
+    if around > 2.0 * np.pi * (1.0 - SAME):
+        if abs(ordered[-1, 1] - ordered[0, 1]) > MEETING * stroke:
+            raise InvalidInput(Problem("pairs", "after a turn the output is another", "it is the same after each turn"))
+        ordered = ordered[:-1]
+    return ordered
 
 
 def _tabulated(law: Any, between: Any, inputs: Any, outputs: Any, count: int) -> tuple[Number, Number]:
@@ -650,7 +694,7 @@ _KINDS: Mapping[str, _TaskOfFile] = {
     "points": _TaskOfFile(points, ("points",), ("at", "tolerance")),
     "mixed": _TaskOfFile(mixed, ("poses", "points"), ("link", "tolerance")),
     "curve": _TaskOfFile(curve, ("points",), ("closed", "links", "tolerance")),
-    "function": _TaskOfFile(function, ("pairs",), ("linkage", "absolute", "tolerance")),
+    "function": _TaskOfFile(function, ("pairs",), ("linkage", "absolute", "links", "tolerance")),
     "swing": _TaskOfFile(swing, ("angle",), ("time_ratio",)),
     "stroke": _TaskOfFile(stroke, ("length",), ("time_ratio", "linkage", "offset")),
     "dwell": _TaskOfFile(dwell, ("swing", "dwells"), ("tolerance",)),
