@@ -69,7 +69,7 @@ def test_a_printed_plot_is_as_wide_as_the_paper(made: Any, opened: Any) -> None:
     view.set_viewport_size({"width": 680, "height": 960})
     # what is printed was drawn for the screen: measured before the page can fit it to its new width
     wide = view.value("""async () => {
-        for (const { plot } of compoundkin.plots.panels) plot.setSize({ width: 850, height: 190 });
+        for (const { plot } of compoundkin.players[0].plots.panels) plot.setSize({ width: 850, height: 190 });
         await null;
         return [...document.querySelectorAll('.plot')].map((plot) => {
             const canvas = plot.querySelector('canvas'), box = canvas.getBoundingClientRect();
@@ -162,9 +162,11 @@ def test_long_names_do_not_widen_the_page(opened: Any, tmp_path: Path) -> None:
 def test_a_rate_that_is_nothing_but_rounding_is_zero(made: Any, opened: Any) -> None:
     """The tracer of a pantograph moves evenly, so its pen does not accelerate though the links between them do."""
     view = opened(made("pantograph"))
-    data = view.value("compoundkin.plots.add('P.acceleration').plot.data.slice(1)")
+    data = view.value("compoundkin.players[0].plots.add('P.acceleration').plot.data.slice(1)")
     assert all(value == 0 for row in data for value in row)
-    assert max(view.value("compoundkin.plots.add('BP.angular_acceleration').plot.data[1].map(Math.abs)")) > 1e-4
+    assert (
+        max(view.value("compoundkin.players[0].plots.add('BP.angular_acceleration').plot.data[1].map(Math.abs)")) > 1e-4
+    )
 
 
 def test_what_cannot_be_known_has_no_unit_and_nothing_is_said_at_every_pose(opened: Any, tmp_path: Path) -> None:

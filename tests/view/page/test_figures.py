@@ -54,10 +54,13 @@ def test_changed_figures_are_those_of_the_changed_mechanism(name: str, made: Any
     view = opened(made(name))
     before = view.value(CELLS)
     own = view.value(
-        "Object.fromEntries(compoundkin.design.names.map((name) => [name, compoundkin.design.value(name)]))"
+        "Object.fromEntries(compoundkin.players[0].design.names.map("
+        "(name) => [name, compoundkin.players[0].design.value(name)]))"
     )
     values = {key: own[key] + more for key, more in CHANGED[name].items()}
-    view.value("(values) => { compoundkin.design.change(values); compoundkin.figures.follow(); }", values)
+    view.value(
+        "(values) => { compoundkin.players[0].design.change(values); compoundkin.players[0].figures.follow(); }", values
+    )
     behind = view.value("[...document.querySelectorAll('tr.behind')].map((row) => row.dataset.figure)")
     assert behind == BEHIND.get(name, [])
     motion = ck.solve(changed(name, values))
@@ -73,7 +76,7 @@ def test_changed_figures_are_those_of_the_changed_mechanism(name: str, made: Any
     for _, row in (one for one in wanted if not one[0]):
         for text, cell in zip(poses[float(str(row[0]))], row, strict=True):
             assert float(text) == pytest.approx(cell, rel=1e-7, abs=1e-6)
-    view.value("() => { compoundkin.design.reset(); compoundkin.figures.follow(); }")
+    view.value("() => { compoundkin.players[0].design.reset(); compoundkin.players[0].figures.follow(); }")
     assert view.value(CELLS) == before
     assert view.complaints == []
 

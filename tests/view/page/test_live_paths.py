@@ -221,7 +221,7 @@ def test_dimensions_are_those_that_may_be_changed_alone() -> None:
 
 
 BADGES = """(designs) => designs.map((numbers) => {
-  const { design, players: [player] } = compoundkin;
+  const [player] = compoundkin.players, { design } = player;
   design.change(Object.fromEntries(design.names.map((name, k) => [name, numbers[k]])));
   const shown = [...document.querySelectorAll(".badges > [data-badge]")];
   return [
@@ -251,7 +251,7 @@ def test_badges_tell_what_solve_counts_after_every_change(name: str, made: Any, 
         assert all(one[2] for one in rest)
         assert open_sections == 0
         assert ("cannot be assembled" in words) == (count < failed.shape[1])
-    view.value("() => compoundkin.design.reset()")
+    view.value("() => compoundkin.players[0].design.reset()")
     ((badges, _, _),) = view.value(BADGES, [dragged.own.tolist()])
     assert not any(stale for *_, stale in badges)
     assert view.complaints == []

@@ -67,7 +67,7 @@ def field(view: Any, label: str) -> Any:
 def numbers(view: Any) -> dict[str, float]:
     """The dimensions that are changed, by name."""
     found = view.evaluate(
-        "() => { const { names, numbers, own } = compoundkin.design;"
+        "() => { const { names, numbers, own } = compoundkin.players[0].design;"
         "return names.map((name, k) => [name, numbers[k], own[k]]).filter(([, a, b]) => a !== b); }"
     )
     return {name: value for name, value, _ in found}
@@ -163,14 +163,16 @@ def test_lengths_and_angles_are_changed_by_keyboard_and_wrong_ones_told(whole: A
     whole.wait_for_function("!document.querySelector('.dimension.changed')")
     assert whole.locator(".original:visible").count() == 0
     # undo goes back over what was typed and stepped
-    assert [step["words"] for step in whole.evaluate("compoundkin.design.history.map(({words}) => ({words}))")][1] != ""
+    assert [
+        step["words"] for step in whole.evaluate("compoundkin.players[0].design.history.map(({words}) => ({words}))")
+    ][1] != ""
     driver = field(whole, "value of crank")
     driver.fill("91")
     driver.press("Enter")
-    assert (whole.evaluate("compoundkin.design.player.pose"), driver.input_value()) == (18, "90")
+    assert (whole.evaluate("compoundkin.players[0].design.player.pose"), driver.input_value()) == (18, "90")
     driver.fill("400")
     driver.press("Enter")
-    assert whole.evaluate("compoundkin.design.player.pose") == 18
+    assert whole.evaluate("compoundkin.players[0].design.player.pose") == 18
     driver.press("Escape")
 
 
@@ -212,21 +214,21 @@ def test_on_a_narrow_screen_the_sketch_comes_along(whole: Any) -> None:
 
 def test_the_address_restores_what_was_changed(whole: Any) -> None:
     values = {"crank.D.x": 15.25, "plate.C.y": 8.7, "slot.angle": float(np.deg2rad(5.0)), "frame.F.x": -0.1}
-    whole.evaluate("(values) => compoundkin.design.load(values, 'test')", values)
+    whole.evaluate("(values) => compoundkin.players[0].design.load(values, 'test')", values)
     taken = "() => { compoundkin.copied = async (text) => { window.taken = text; return true; }; }"
     whole.evaluate(taken)
     whole.click("[data-share=link]")
     address = whole.evaluate("window.taken")
     assert address.endswith("#dimensions=slot.angle:5deg,frame.F.x:-0.1,crank.D.x:15.25,plate.C.y:8.7")
-    whole.evaluate("compoundkin.design.reset()")
+    whole.evaluate("compoundkin.players[0].design.reset()")
     whole.evaluate("(hash) => { location.hash = hash; }", address.partition("#")[2])
-    whole.wait_for_function("compoundkin.design.isChanged")
+    whole.wait_for_function("compoundkin.players[0].design.isChanged")
     assert numbers(whole) == values
     # back to the address before it, and on again
     whole.go_back()
-    whole.wait_for_function("!compoundkin.design.isChanged")
+    whole.wait_for_function("!compoundkin.players[0].design.isChanged")
     whole.go_forward()
-    whole.wait_for_function("compoundkin.design.isChanged")
+    whole.wait_for_function("compoundkin.players[0].design.isChanged")
     assert numbers(whole) == values
     # an ordinary anchor goes where it always went, and changes nothing
     whole.evaluate("() => { location.hash = 'outputs'; }")
@@ -244,7 +246,7 @@ def test_the_address_restores_what_was_changed(whole: Any) -> None:
     assert (loads(area[0]), area[1]) == (changed, len(area[0]))
     saved_numbers(whole, changed)
     saved_picture(whole)
-    whole.evaluate("compoundkin.design.reset()")
+    whole.evaluate("compoundkin.players[0].design.reset()")
 
 
 def saved_numbers(whole: Any, changed: ck.Mechanism) -> None:
@@ -280,7 +282,7 @@ MALFORMED = """([names, texts, wholes]) => {
   let seed = 1;
   const random = (n) => { seed = (seed * 48271) % 2147483647; return seed % n; };
   const pick = (list) => list[random(list.length)];
-  const { design } = compoundkin, before = JSON.stringify([...design.numbers]), wrong = [];
+  const [{ design }] = compoundkin.players, before = JSON.stringify([...design.numbers]), wrong = [];
   const good = (k) => `${design.names[k % design.names.length]}:${1 + random(9)}`;
   const mixed = (k) => {
     const bad = random(2) ? `${pick(names)}:${pick(["1", ...texts])}` : `crank.D.x:${pick(texts)}`;
@@ -330,7 +332,7 @@ def test_at_a_gap_stands_what_is_known_and_the_circles_that_miss(made: Any, open
     """A crank of 27 is too long for plate and rocker at 180 degrees: about D and B lie circles of 39 and 28 apart."""
     view = opened(made("six-bar"))
     found = view.value("""() => {
-      const { design, players: [player] } = compoundkin, { window } = player.data;
+      const [player] = compoundkin.players, { design } = player, { window } = player.data;
       design.change({ "crank.D.x": 27 });
       player.show(36);
       const known = player.parts.filter((part) => !part.classList.contains("missing"));
@@ -342,6 +344,6 @@ def test_at_a_gap_stands_what_is_known_and_the_circles_that_miss(made: Any, open
     }""")
     assert sorted(found["shown"]) == ["crank", "frame"]
     assert np.allclose(sorted(found["circles"]), [[-27, 0, 39], [41, 0, 28]], atol=1e-9)
-    view.value("() => compoundkin.design.reset()")
+    view.value("() => compoundkin.players[0].design.reset()")
     assert view.locator(".misses, .missing").count() == 0
     assert view.complaints == []

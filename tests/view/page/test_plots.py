@@ -14,7 +14,7 @@ from compoundkin.kinematics.extremes import between, extremes
 from compoundkin.view.report import page
 from tests import catalog
 
-PANELS = "Object.fromEntries(compoundkin.plots.panels.map((panel) => [panel.name, panel]))"
+PANELS = "Object.fromEntries(compoundkin.players[0].plots.panels.map((panel) => [panel.name, panel]))"
 
 
 def test_curves_are_those_of_the_motion_between_its_poses_too(made: Any, opened: Any) -> None:
@@ -55,30 +55,34 @@ def test_jumps_part_curves_rounding_has_no_marks_and_axes_have_limits(opened: An
     exact = ck.solve(mechanism, time=np.array([0.25 + 1e-9, 0.76 - 1e-9])).links["arm"].angular_acceleration
     assert [one["y"] for one in pieces[1]] == pytest.approx(exact.tolist(), rel=1e-6)
     _follows(view, ck.solve(changed, time=motion.time))
-    view.value("compoundkin.plots.add('A.position')")
+    view.value("compoundkin.players[0].plots.add('A.position')")
     assert view.value(f"{PANELS}['A.position'].curves.map((curve) => curve.marks.length)") == [0, 0]
-    assert view.value("compoundkin.plots.panels.every(({ plot }) => plot.series.every((one, k) => !k || !one.pxAlign))")
+    assert view.value(
+        "compoundkin.players[0].plots.panels.every(({ plot }) => plot.series.every((one, k) => !k || !one.pxAlign))"
+    )
     panel = view.locator(".plot").last
     panel.get_by_role("button", name="Axes").click()
     field = panel.get_by_role("textbox", name="from")
     field.fill("0.5")
     field.press("Enter")
-    assert view.value("compoundkin.plots.panels.at(-1).plot.scales.x.min") == 0.5
+    assert view.value("compoundkin.players[0].plots.panels.at(-1).plot.scales.x.min") == 0.5
     panel.locator(".u-over").dblclick()
-    assert view.value("compoundkin.plots.panels.at(-1).plot.scales.x.min") == 0.0
+    assert view.value("compoundkin.players[0].plots.panels.at(-1).plot.scales.x.min") == 0.0
     assert view.complaints == []
 
 
 def _follows(view: Any, motion: ck.results.Motion) -> None:
     """The extremes of a changed motion in time, on both sides of jumps too."""
-    view.value("() => { compoundkin.design.change({ 'rod.C.x': 3.2 }); compoundkin.figures.follow(); }")
+    view.value(
+        "() => { compoundkin.players[0].design.change({ 'rod.C.x': 3.2 }); compoundkin.players[0].figures.follow(); }"
+    )
     (found,) = extremes(motion, "arm.angular_acceleration")
     row = view.value("""() => [...document.querySelectorAll("tr[data-figure]")]
         .find((row) => row.dataset.figure.includes("range") && row.dataset.figure.includes("arm.angular_acc"))
         .innerHTML.match(/data-sort="[^"]*"/g).map((text) => Number(text.slice(11, -1)))""")
     wanted = [float(v) for end in (found.least, found.greatest) for v in (end.value[0], np.array(end.at.time)[0])]
     assert row[:4] == pytest.approx(wanted, abs=1e-5)
-    view.value("() => { compoundkin.design.reset(); compoundkin.figures.follow(); }")
+    view.value("() => { compoundkin.players[0].design.reset(); compoundkin.players[0].figures.follow(); }")
 
 
 def test_a_constant_rate_of_poses_that_accelerate_is_drawn_level(opened: Any, tmp_path: Path) -> None:
@@ -86,7 +90,7 @@ def test_a_constant_rate_of_poses_that_accelerate_is_drawn_level(opened: Any, tm
     page(ck.solve(load("oldham-coupling"), speed=5, acceleration=2)).save(tmp_path / "oldham.html")
     view = opened(tmp_path / "oldham.html")
     low, high = view.value("""() => {
-      const one = compoundkin.plots.panels.find(({ name }) => name === "output.angular_velocity");
+      const one = compoundkin.players[0].plots.panels.find(({ name }) => name === "output.angular_velocity");
       return ["low", "high"].map((end) => one.curves[0].ends[end].y);
     }""")
     assert high - low < 1e-9

@@ -33,7 +33,7 @@ VERTICES = """() => {
   }
   return found;
 }"""
-CHANGED = f"(values) => {{ const {{ design }} = compoundkin; design.change(values); return ({VERTICES})(); }}"
+CHANGED = f"(values) => {{ const [{{ design }}] = compoundkin.players; design.change(values); return ({VERTICES})(); }}"
 
 # Mechanisms of dyads, slides, slots, gears and outlines.
 NAMES = (
@@ -106,7 +106,7 @@ def _changes(motion: ck.results.Motion, names: list[str], seed: int) -> dict[str
 def test_what_is_drawn_anew_is_what_painters_draw(name: str, made: Any, opened: Any) -> None:
     motion, view = catalog.motion(name), opened(made(name))
     names, window, pose = view.value(
-        "() => { const { names, player } = compoundkin.design; return [names, player.data.window, player.pose]; }"
+        "() => { const [player] = compoundkin.players; return [player.design.names, player.data.window, player.pose]; }"
     )
     stated = StatedDimensions(motion.mechanism, motion.inputs.ends)
     limit = STILL if motion.mechanism.outlines else WRITTEN

@@ -13,7 +13,7 @@ from compoundkin.view.page import player
 from compoundkin.view.report import page
 from tests import catalog
 
-from .conftest import DESK, PHONE
+from .conftest import DESK, PHONE, Opened
 
 PLAYER = "compoundkin.players[0]"
 
@@ -208,7 +208,7 @@ def test_plots_have_a_cursor_that_follows_and_leads(made: Any, opened: Any) -> N
 def test_plots_show_the_outputs(made: Any, opened: Any) -> None:
     motion = catalog.motion("six-bar")
     view = opened(made("six-bar"))
-    data = view.value("compoundkin.plots.panels.map((panel) => panel.plot.data)")
+    data = view.value("compoundkin.players[0].plots.panels.map((panel) => panel.plot.data)")
     velocity = np.asarray(motion.points["G"].velocity)
     np.testing.assert_allclose(data[1][1], velocity.real, rtol=1e-6, atol=1e-4)
     np.testing.assert_allclose(data[1][2], velocity.imag, rtol=1e-6, atol=1e-4)
@@ -223,11 +223,11 @@ def test_any_other_quantity_can_be_plotted(made: Any, opened: Any) -> None:
     view.select_option(".quantity", "rocker.angular_acceleration")
     view.click(".add")
     assert view.locator(".plot").count() == before + 1
-    data = view.value("compoundkin.plots.panels.at(-1).plot.data[1]")
+    data = view.value("compoundkin.players[0].plots.panels.at(-1).plot.data[1]")
     np.testing.assert_allclose(data, motion.links["rocker"].angular_acceleration, rtol=1e-6, atol=1e-5)
     view.select_option(".quantity", "A.position")
     view.click(".add")
-    data = view.value("compoundkin.plots.panels.at(-1).plot.data[2]")
+    data = view.value("compoundkin.players[0].plots.panels.at(-1).plot.data[2]")
     np.testing.assert_allclose(data, motion.points["A"].y, atol=1e-9)
     view.locator(".remove").last.click()
     view.locator(".remove").last.click()
@@ -240,7 +240,7 @@ def test_every_choice_of_a_quantity_draws_a_plot(made: Any, opened: Any) -> None
     names = view.value("[...document.querySelector('.quantity').options].map((option) => option.value)")
     assert len(names) > 10
     for name in names:
-        drawn = view.value("name => compoundkin.plots.add(name).plot.data.slice(1)", name)
+        drawn = view.value("name => compoundkin.players[0].plots.add(name).plot.data.slice(1)", name)
         assert all(value is None or np.isfinite(value) for row in drawn for value in row), name
         assert any(value is not None for row in drawn for value in row), name
     assert view.complaints == []
@@ -259,7 +259,7 @@ def test_poses_that_cannot_be_assembled_are_said(opened: Callable[..., Any], tmp
     assert "cannot be assembled" in view.get_attribute(".slider", "aria-valuetext")
     set_slider(view, int(np.flatnonzero(motion.assembled)[0]))
     assert view.text_content(".said") == ""
-    gaps = view.value("compoundkin.plots.panels[0].plot.data[1].filter((value) => value === null).length")
+    gaps = view.value("compoundkin.players[0].plots.panels[0].plot.data[1].filter((value) => value === null).length")
     assert gaps == int((~motion.assembled).sum())
     assert view.complaints == []
 
@@ -277,10 +277,12 @@ def test_a_driver_that_goes_back_and_forth_is_plotted_over_poses(opened: Callabl
     there = np.concatenate([np.arange(0, 91, 10), np.arange(80, -1, -10)])
     page(ck.solve(load("six-bar"), {"crank": ck.deg(there)})).save(tmp_path / "back.html")
     view = opened(tmp_path / "back.html")
-    assert view.value("compoundkin.plots.panels[0].plot.data[0]") == list(range(19))
+    assert view.value("compoundkin.players[0].plots.panels[0].plot.data[0]") == list(range(19))
     page(ck.solve(load("six-bar"), {"crank": ck.deg(range(90, -1, -10))})).save(tmp_path / "down.html")
     view = opened(tmp_path / "down.html")
-    np.testing.assert_allclose(view.value("compoundkin.plots.panels[0].plot.data[0]"), range(0, 91, 10), atol=1e-9)
+    np.testing.assert_allclose(
+        view.value("compoundkin.players[0].plots.panels[0].plot.data[0]"), range(0, 91, 10), atol=1e-9
+    )
     set_slider(view, 2)
     assert "crank 70°" in view.text_content(".where")
 
@@ -379,3 +381,87 @@ def test_no_letter_of_any_mechanism_is_nearer_to_another_point(name: str, window
         told, wrong = window.evaluate(NEARER)
         assert told
         assert wrong == []
+
+
+# Counts what listens to the document and the window, what is observed, and what waits for a time or a picture.
+COUNTED = """
+(() => {
+  const counts = window.counts = { heard: new Set(), observed: new Set(), waits: new Set() };
+  const { addEventListener: add, removeEventListener: remove } = EventTarget.prototype;
+  EventTarget.prototype.addEventListener = function (kind, run, how) {
+    const one = { target: this, kind, run };
+    if (!how?.once && !how?.signal?.aborted && !(this instanceof AbortSignal)) counts.heard.add(one);
+    how?.signal?.addEventListener("abort", () => counts.heard.delete(one));
+    return add.call(this, kind, run, how);
+  };
+  EventTarget.prototype.removeEventListener = function (kind, run, how) {
+    const isIt = (one) => one.target === this && one.kind === kind && one.run === run;
+    for (const one of counts.heard) if (isIt(one)) counts.heard.delete(one);
+    return remove.call(this, kind, run, how);
+  };
+  for (const name of ["ResizeObserver", "MutationObserver", "IntersectionObserver"]) {
+    const { observe, disconnect } = window[name].prototype;
+    window[name].prototype.observe = function (...given) {
+      counts.observed.add(this);
+      return observe.apply(this, given);
+    };
+    window[name].prototype.disconnect = function () { counts.observed.delete(this); return disconnect.call(this); };
+  }
+  for (const [begin, end] of [["setTimeout", "clearTimeout"], ["requestAnimationFrame", "cancelAnimationFrame"]]) {
+    const [own, stop] = [window[begin], window[end]];
+    window[begin] = (run, ...more) => {
+      const id = own((...given) => { counts.waits.delete(key); run(...given); }, ...more), key = `${begin} ${id}`;
+      counts.waits.add(key);
+      return id;
+    };
+    window[end] = (id) => { counts.waits.delete(`${begin} ${id}`); stop(id); };
+  }
+  window.counted = () => {
+    // what listens inside the markup of a player that has gone goes with it
+    const outside = [...counts.heard].filter(({ target }) => !(target instanceof Node) || document.contains(target));
+    return [outside.length, counts.observed.size, counts.waits.size];
+  };
+})();
+"""
+
+
+def test_players_are_mounted_and_unmounted_and_leave_nothing_behind(
+    made: Callable[[str], Path], opened: Callable[..., Opened]
+) -> None:
+    """Two pages' players in one document: each has its own design, and one that has gone listens to nothing more."""
+    view = opened(made("six-bar"), script=COUNTED)
+    until(view, "compoundkin.players.length === 1 && counts.waits.size === 0")
+    before, other = view.value("counted()"), made("crank-rocker").read_text(encoding="utf-8")
+    view.value(
+        """html => {
+          const whole = new DOMParser().parseFromString(html, "text/html"), root = whole.querySelector(".player");
+          document.querySelector(".player").after(document.adoptNode(root));
+          window.other = compoundkin.mount(root, JSON.parse(whole.getElementById("ck-motion").textContent));
+        }""",
+        other,
+    )
+    one, two = "compoundkin.players[0]", "compoundkin.players[1]"
+    assert view.value("counted()[0]") > before[0]
+    assert view.value("counted()[1]") > before[1]
+    # each moves and changes by itself; a key of one is no key of the other
+    view.value(f"() => {{ {two}.design.change({{ 'crank.B.x': 22 }}); {two}.design.commit(''); {two}.show(3); }}")
+    assert view.value(f"[{one}.design.isChanged, {two}.design.isChanged, {one}.pose === 3]") == [False, True, False]
+    # while it plays, is dragged and is about to draw what it was told
+    view.value(
+        f"() => {{ {one}.transport.start(); {two}.transport.start(); {two}.design.soon({{ 'crank.B.x': 23 }}); }}"
+    )
+    handle = view.locator(".handle.point").last
+    handle.focus()
+    handle.press("Enter")
+    view.value("() => { const { root } = other; other.unmount(); root.remove(); }")
+    assert view.value("[compoundkin.players.length, other.transport.playing]") == [1, False]
+    assert view.value(f"{one}.transport.playing")
+    view.value(f"{one}.transport.stop()")
+    until(view, "counts.waits.size === 0")
+    assert view.value("counted()") == before
+    # the one that stays goes on, alone
+    pose = view.value("other.pose")
+    view.keyboard.press("Control+z")
+    view.value(f"() => {{ {one}.design.change({{ 'crank.D.x': 15 }}); {one}.design.commit(''); {one}.show(5); }}")
+    assert view.value(f"[{one}.design.isChanged, {one}.pose, other.pose]") == [True, 5, pose]
+    assert view.complaints == []

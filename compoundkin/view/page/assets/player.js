@@ -34,6 +34,8 @@
       this.poses = data.poses;
       this.pose = -1;
       this.listeners = [];
+      // all that listens or waits for it ends with it
+      this.ended = new AbortController();
       const open = (text) => page.unpacked(text, data.poses);
       this.assembled = open(data.assembled);
       this.along = { ...data.along, values: open(data.along.values) };
@@ -69,7 +71,22 @@
       this.listen();
       this.design = null; // of a live page: design.js
       this.show(data.start);
-      new ResizeObserver(() => this.fit()).observe(this.svg);
+      this.watch(new ResizeObserver(() => this.fit()), this.svg);
+    }
+    get signal() { return this.ended.signal; }
+    // what an observer sees of some elements, as long as the player is mounted
+    watch(observer, ...elements) {
+      for (const one of elements) observer.observe(one);
+      this.atEnd(() => observer.disconnect());
+    }
+    atEnd(run) {
+      this.signal.addEventListener("abort", run, { once: true });
+    }
+    // its markup stays as it is shown, whose it is takes it away; what was added to it goes
+    unmount() {
+      this.transport.stop();
+      this.ended.abort();
+      page.players.splice(page.players.indexOf(this), 1);
     }
 
     find() {
@@ -128,13 +145,14 @@
     listen() {
       const boxes = [...this.root.querySelectorAll("[data-show]")], { shown } = this.overlays;
       const take = (box) => shown[box.checked ? "add" : "delete"](box.dataset.show);
-      for (const box of boxes) box.addEventListener("change", () => { take(box); this.switched(); });
+      const { signal } = this;
+      for (const box of boxes) box.addEventListener("change", () => { take(box); this.switched(); }, { signal });
       // browsers remember where the slider was and what was switched on when one comes back to a page
       addEventListener("pageshow", () => {
         boxes.forEach(take);
         this.switched();
         this.show(this.transport.asked);
-      });
+      }, { signal });
     }
     switched() {
       this.svg.classList.toggle("nameless", !this.overlays.shown.has("names"));
@@ -282,9 +300,18 @@
     }
   }
 
-  Object.assign(page, { Player, players: [] });
-  for (const root of document.querySelectorAll(".player")) {
-    const data = JSON.parse(document.getElementById("ck-motion").textContent);
-    page.players.push(new Player(root, data));
-  }
+  // The players that are mounted, and what each of them has besides, in the order of the scripts that bring it.
+  const players = [], attached = [];
+  const attach = (run) => {
+    attached.push(run);
+    players.forEach(run);
+  };
+  const mount = (root, data) => {
+    const player = new Player(root, data);
+    players.push(player);
+    attached.forEach((run) => run(player));
+    return player;
+  };
+  Object.assign(page, { Player, players, attach, mount });
+  for (const root of document.querySelectorAll(".player")) mount(root, JSON.parse(document.getElementById("ck-motion").textContent));
 })();

@@ -2,10 +2,10 @@
 (() => {
   "use strict";
   const page = window.compoundkin;
-  const player = page.players && page.players[0];
+  const [player] = page.players ?? [];
   const place = document.querySelector(".plots");
   if (!player || !place) return;
-  const axis = page.plotAxis(player);
+  const axis = page.plotAxis(player), { signal } = player;
   const { known } = axis;
 
   // --- extremes that the page tells, found between the poses: those of the design it was made of -----------------------
@@ -47,15 +47,14 @@
   for (const output of player.outputs) add(output.name, false);
   const button = place.querySelector(".add");
   if (button) {
-    button.addEventListener("click", () => add(place.querySelector(".quantity").value, true).figure.scrollIntoView({ block: "nearest" }));
+    button.addEventListener("click", () => add(place.querySelector(".quantity").value, true).figure.scrollIntoView({ block: "nearest" }), { signal });
   }
 
   // --- canvases follow the page: its width, its colours, paper ---------------------------------------------------------
-  const fitted = new ResizeObserver(() => {
+  player.watch(new ResizeObserver(() => {
     panels.forEach((panel) => panel.fit());
     follow();
-  });
-  fitted.observe(place);
+  }), place);
   const paint = () => {
     for (const panel of panels) {
       if (panel.isBehind) panel.refresh();
@@ -63,9 +62,13 @@
     }
     follow();
   };
-  document.addEventListener("compoundkin:theme", paint);
-  matchMedia("print").addEventListener("change", paint);
-  addEventListener("beforeprint", paint);
-  addEventListener("afterprint", paint);
-  page.plots = { panels, add: (name) => add(name, true), settle: () => panels.filter(({ isBehind }) => isBehind).forEach((panel) => panel.refresh()) };
+  document.addEventListener("compoundkin:theme", paint, { signal });
+  matchMedia("print").addEventListener("change", paint, { signal });
+  addEventListener("beforeprint", paint, { signal });
+  addEventListener("afterprint", paint, { signal });
+  player.atEnd(() => {
+    seen.disconnect();
+    for (const { plot, figure } of panels.splice(0)) { plot.destroy(); figure.remove(); }
+  });
+  player.plots = { panels, add: (name) => add(name, true), settle: () => panels.filter(({ isBehind }) => isBehind).forEach((panel) => panel.refresh()) };
 })();

@@ -10,10 +10,11 @@
       this.playing = false;
       const one = (selector) => player.root.querySelector(selector);
       Object.assign(this, { slider: one(".slider"), play: one(".play"), where: one(".where"), choice: one(".speed") });
-      this.slider.addEventListener("input", () => this.to(this.asked));
-      one(".back").addEventListener("click", () => this.step(-1));
-      one(".forth").addEventListener("click", () => this.step(1));
-      this.play.addEventListener("click", () => (this.playing ? this.stop() : this.start()));
+      const { signal } = player;
+      this.slider.addEventListener("input", () => this.to(this.asked), { signal });
+      one(".back").addEventListener("click", () => this.step(-1), { signal });
+      one(".forth").addEventListener("click", () => this.step(1), { signal });
+      this.play.addEventListener("click", () => (this.playing ? this.stop() : this.start()), { signal });
       if (player.poses < 2) for (const control of player.root.querySelectorAll(".transport :is(button, input, select)")) control.disabled = true;
     }
     // the pose that the slider is at

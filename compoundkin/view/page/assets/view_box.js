@@ -90,6 +90,7 @@
       this.whole = button("Fit", "The whole sketch", () => this.fit());
       this.svg.after(made);
       this.controls = made;
+      this.player.atEnd(() => made.remove());
     }
     keys() {
       this.svg.tabIndex = 0;
@@ -102,25 +103,25 @@
         else if (event.key === "0") this.fit();
         else return;
         event.preventDefault();
-      });
+      }, { signal: this.player.signal });
     }
 
     // --- by wheel, pointer and fingers ----------------------------------------------------------------------------------
     pointers() {
-      const { svg } = this;
+      const { svg, player: { signal } } = this;
       svg.addEventListener("wheel", (event) => {
         if (!event.ctrlKey && !event.metaKey) return; // the page scrolls
         event.preventDefault();
         const pixels = event.deltaY * [1, 16, 100][event.deltaMode];
         this.by(Math.exp(-pixels * WHEEL * (Math.abs(pixels) < 40 ? 4 : 1)), [event.clientX, event.clientY]);
-      }, { passive: false });
+      }, { passive: false, signal });
       svg.addEventListener("pointerdown", (event) => {
         if (event.pointerType === "touch") this.fingers.set(event.pointerId, [event.clientX, event.clientY]);
         const ground = !event.target.closest(".parts, [data-tool]");
         if (this.zoom > 1 && ground && event.button === 0 && this.fingers.size < 2) this.drag(event);
-      });
-      addEventListener("pointermove", (event) => this.pinch(event));
-      for (const kind of ["pointerup", "pointercancel"]) addEventListener(kind, (event) => this.fingers.delete(event.pointerId));
+      }, { signal });
+      addEventListener("pointermove", (event) => this.pinch(event), { signal });
+      for (const kind of ["pointerup", "pointercancel"]) addEventListener(kind, (event) => this.fingers.delete(event.pointerId), { signal });
     }
     drag(event) {
       let last = [event.clientX, event.clientY], far = 0;
@@ -161,5 +162,5 @@
   }
 
   page.ViewBox = ViewBox;
-  for (const player of page.players) new ViewBox(player);
+  page.attach((player) => new ViewBox(player));
 })();

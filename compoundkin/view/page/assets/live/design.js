@@ -17,6 +17,7 @@
       this.listeners = { change: [], commit: [] };
       this.wanted = null; // what the next picture shall show
       this.at = 0; // the step of the history that it is, or was before what was changed since
+      player.atEnd(() => cancelAnimationFrame(this.frame));
     }
 
     // computed when it is first asked for: most who read a page change nothing
@@ -127,7 +128,7 @@
     soon(values) {
       const waits = this.wanted;
       this.wanted = { ...this.wanted, ...values };
-      if (!waits) requestAnimationFrame(() => this.settle());
+      if (!waits) this.frame = requestAnimationFrame(() => this.settle());
     }
     settle() {
       if (this.wanted) this.change({});
@@ -208,9 +209,8 @@
   }
 
   page.Design = Design;
-  for (const player of page.players) {
+  page.attach((player) => {
     const { live } = player.data;
     player.design = live && !live.why ? new Design(player, player.path) : null;
-  }
-  page.design = page.players.length ? page.players[0].design : null;
+  });
 })();

@@ -14,8 +14,10 @@
       this.handles = new page.Handles(player, this);
       this.numbers = new page.Readout(this.handles);
       this.free = new page.FreePose(player);
-      document.addEventListener("keydown", (event) => { if (event.key === "Escape" && this.held) this.takeBack(); });
-      player.svg.addEventListener("pointerdown", (event) => this.body(event));
+      const { signal } = player;
+      document.addEventListener("keydown", (event) => { if (event.key === "Escape" && this.held) this.takeBack(); }, { signal });
+      player.svg.addEventListener("pointerdown", (event) => this.body(event), { signal });
+      player.atEnd(() => { cancelAnimationFrame(this.frame); this.listening?.abort(); });
     }
 
     // --- taken and let go ---------------------------------------------------------------------------------------------
@@ -57,7 +59,7 @@
       const begun = [event.clientX, event.clientY], { left, top } = this.handles.layer.getBoundingClientRect();
       // from the pointer to the middle of the handle: it does not jump there
       const off = target === one.button ? [one.at[0] - (begun[0] - left), one.at[1] - (begun[1] - top)] : [0, 0];
-      const listening = new AbortController(), { signal } = listening;
+      const listening = (this.listening = new AbortController()), { signal } = listening;
       const on = (kind, act) => target.addEventListener(kind, (told) => { if (told.pointerId === event.pointerId) act(told); }, { signal });
       const isMine = () => this.held && this.held.one === one;
       let moved = false;
@@ -95,7 +97,7 @@
     soon(told) {
       const { waits } = this;
       this.waits = told;
-      if (!waits) requestAnimationFrame(() => this.flush());
+      if (!waits) this.frame = requestAnimationFrame(() => this.flush());
     }
     flush() {
       const told = this.waits;
@@ -129,5 +131,5 @@
   }
 
   page.Drag = Drag;
-  for (const player of page.players) if (player.design && player.data.live.handles) player.drag = new Drag(player);
+  page.attach((player) => { if (player.design && player.data.live.handles) player.drag = new Drag(player); });
 })();

@@ -2,9 +2,8 @@
 (() => {
   "use strict";
   const page = window.compoundkin;
-  const { design } = page;
+  const [player] = page.players, design = player?.design;
   if (!design || !page.Courses) return;
-  const { player } = design;
   const DEGREE = 180 / Math.PI;
   const RESTS = 100; // milliseconds without a change after which tables follow
   const SLICE = 6; // milliseconds of work between two pictures of the screen
@@ -247,7 +246,7 @@
   ];
   // in parts, so that a page may draw between them
   function* parts() {
-    page.plots?.settle();
+    player.plots?.settle();
     if (!design.isChanged) return restore();
     yield;
     const courses = new page.Courses(design);
@@ -287,7 +286,8 @@
     clearTimeout(waits);
     waits = setTimeout(() => sliced(), RESTS);
   });
-  document.querySelector("#outputs .tools .more")?.addEventListener("click", () => { if (design.isChanged) outputs(); });
+  document.querySelector("#outputs .tools .more")?.addEventListener("click", () => { if (design.isChanged) outputs(); }, { signal: player.signal });
+  player.atEnd(() => clearTimeout(waits));
   for (const section of document.querySelectorAll(`${FOLLOWING}, #motion`)) section.dataset.follows = "";
-  page.figures = { follow };
+  player.figures = { follow };
 })();

@@ -21,8 +21,10 @@
       if (this.stop) this.stop.button.tabIndex = 0;
       this.listen();
       player.listeners.push(() => this.place());
-      for (const box of [player.svg, figure]) new ResizeObserver(() => this.measure()).observe(box);
-      new MutationObserver(() => this.measure()).observe(player.svg, { attributeFilter: ["viewBox", "preserveAspectRatio"] });
+      player.watch(new ResizeObserver(() => this.measure()), player.svg, figure);
+      const framed = new MutationObserver(() => this.measure());
+      framed.observe(player.svg, { attributeFilter: ["viewBox", "preserveAspectRatio"] });
+      player.atEnd(() => { framed.disconnect(); this.layer.remove(); });
       this.measure();
     }
     // a point all of whose coordinates on its links are dimensions

@@ -24,7 +24,8 @@
       this.ghost = new page.Ghost(player);
       for (const kind of ["change", "commit"]) this.design.on(kind, () => this.follow());
       this.follow();
-      document.addEventListener("keydown", (event) => this.key(event));
+      document.addEventListener("keydown", (event) => this.key(event), { signal: player.signal });
+      player.atEnd(() => row.remove());
     }
     button(text, row, act) {
       const button = page.made("button", { type: "button" }, row);
@@ -70,5 +71,5 @@
   }
 
   page.History = History;
-  for (const player of page.players) if (player.design) player.history = new History(player);
+  page.attach((player) => { if (player.design) player.history = new History(player); });
 })();

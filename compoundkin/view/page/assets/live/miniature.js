@@ -13,11 +13,13 @@
       this.root.ariaHidden = "true";
       this.root.hidden = true;
       document.body.append(this.root);
-      place.addEventListener("focusin", (event) => this.show(event.target));
-      place.addEventListener("focusout", () => this.hide());
+      const { signal } = player;
+      place.addEventListener("focusin", (event) => this.show(event.target), { signal });
+      place.addEventListener("focusout", () => this.hide(), { signal });
+      player.atEnd(() => { cancelAnimationFrame(this.waits); this.root.remove(); });
       player.listeners.push(() => this.soon());
       player.design.on("change", () => this.soon());
-      document.addEventListener("compoundkin:light", () => this.soon());
+      document.addEventListener("compoundkin:light", () => this.soon(), { signal });
     }
     show(field) {
       if (!field.matches("input") || this.player.svg.getBoundingClientRect().bottom > innerHeight / 4) return;
@@ -45,6 +47,6 @@
     }
   }
 
-  const place = document.querySelector("#dimensions .dimensions");
-  if (place && page.design) page.miniature = new Miniature(page.design.player, place);
+  const place = document.querySelector("#dimensions .dimensions"), [player] = page.players;
+  if (place && player?.design) player.miniature = new Miniature(player, place);
 })();

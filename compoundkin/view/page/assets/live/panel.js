@@ -178,8 +178,14 @@
       this.own = (name) => this.design.own[this.design.index.get(name)];
       this.build(live.panel);
       for (const kind of ["focusin", "focusout"]) {
-        this.root.addEventListener(kind, ({ target }) => document.documentElement.classList.toggle("measuring", kind === "focusin" && Boolean(target.closest(".dimension"))));
+        this.root.addEventListener(kind, ({ target }) => document.documentElement.classList.toggle("measuring", kind === "focusin" && Boolean(target.closest(".dimension"))), { signal: player.signal });
       }
+      player.atEnd(() => {
+        clearTimeout(this.resting);
+        cancelAnimationFrame(this.waits);
+        for (const field of this.fields) field.forget();
+        this.root.querySelector(".dimensions").replaceChildren();
+      });
       player.listeners.push(() => this.soon());
       for (const kind of ["change", "commit"]) this.design.on(kind, () => this.soon());
       this.update();
@@ -256,6 +262,7 @@
     }
   }
 
-  const root = document.getElementById("dimensions");
-  if (root && page.design) page.panel = new Panel(root, page.design.player);
+  // a document has one place for it: that of the player which it came with
+  const root = document.getElementById("dimensions"), [player] = page.players;
+  if (root && player?.design) player.panel = new Panel(root, player);
 })();

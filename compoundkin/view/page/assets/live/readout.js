@@ -16,6 +16,10 @@
       this.spoken = page.made("p", { class: "unseen spoken", role: "status" }, player.root);
       this.lines = page.drawn("g", { class: "snaps", "data-tool": "" }, player.svg);
       this.text = "";
+      player.atEnd(() => {
+        clearTimeout(this.waits);
+        for (const one of [this.spoken, this.lines]) one.remove();
+      });
     }
     // `found` is where it was put and what drew it there, `lengths` lines of text
     show(one, { at, lines }, lengths) {

@@ -193,5 +193,5 @@
   }
 
   page.Redraw = Redraw;
-  for (const { design } of page.players) if (design && design.player.data.live.redraw) design.redraw = new Redraw(design);
+  page.attach(({ design }) => { if (design && design.player.data.live.redraw) design.redraw = new Redraw(design); });
 })();

@@ -2,9 +2,9 @@
 (() => {
   "use strict";
   const page = window.compoundkin;
-  const root = document.getElementById("dimensions"), { design } = page;
+  const root = document.getElementById("dimensions"), [player] = page.players, design = player?.design;
   if (!root || !design) return;
-  const { player } = design, told = root.querySelector(".told"), area = root.querySelector(".taken");
+  const { signal } = player, told = root.querySelector(".told"), area = root.querySelector(".taken");
 
   // --- the buttons ---------------------------------------------------------------------------------------------------------------
   // what is refused is told where one looks when a page opens: above the sketch
@@ -53,7 +53,7 @@
     },
     svg: () => save(page.svgOf(player), "svg", "image/svg+xml"),
   };
-  for (const button of root.querySelectorAll("[data-share]")) button.addEventListener("click", () => acts[button.dataset.share](button));
+  for (const button of root.querySelectorAll("[data-share]")) button.addEventListener("click", () => acts[button.dataset.share](button), { signal });
   const { why } = design.path.data.toml;
   if (why) {
     root.querySelector("[data-share=toml]").disabled = true;
@@ -74,7 +74,7 @@
     if (!before || before.problem) return open();
     design.load({}, "original dimensions");
     tell("Original dimensions.");
-  });
+  }, { signal });
 
   // --- what does not follow --------------------------------------------------------------------------------------------------------
   // badges: that of the poses follows, those of checks and of published numbers are struck out; sections are folded away

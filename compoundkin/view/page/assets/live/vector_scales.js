@@ -47,5 +47,5 @@
     }
   }
 
-  for (const player of page.players) if (player.design) player.vectorScales = new VectorScales(player);
+  page.attach((player) => { if (player.design) player.vectorScales = new VectorScales(player); });
 })();
