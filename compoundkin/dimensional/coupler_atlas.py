@@ -308,7 +308,7 @@ def coupler_atlas(
             for k, (chain, designs, descriptors) in enumerate(_all_made(links, count, seed)):
                 columns = {one.name: designs[:, n] for n, one in enumerate(chain.numbers)}
                 columns[_DESCRIPTOR] = descriptors.view(np.float32)
-                (fresh / _file(k)).write_bytes(part_content(_columns(chain), columns, fingerprint))
+                (fresh / _file(k)).write_bytes(part_content(_columns(chain), [columns], fingerprint))
             (fresh / _DEFINITION).write_text(definition, encoding="utf-8")
     elif kept != definition:
         raise InvalidInput(

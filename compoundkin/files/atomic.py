@@ -33,7 +33,8 @@ def write_atomically(path: str | os.PathLike[str], write: Callable[[BinaryIO], A
                 write(file)
             return
         # a link is followed, so that it stays one
-        _replace(Path(os.path.realpath(path)), write)
+        with atomic_file(Path(os.path.realpath(path))) as file:
+            write(file)
     except (OSError, ValueError) as error:
         what = getattr(error, "strerror", None) or str(error)
         raise InvalidInput(Problem(str(path), f"it cannot be written: {what}")) from None
@@ -78,11 +79,13 @@ def new_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
         shutil.rmtree(beside, ignore_errors=True)
 
 
-def _replace(target: Path, write: Callable[[BinaryIO], Any]) -> None:
+@contextmanager
+def atomic_file(target: Path) -> Iterator[BinaryIO]:
+    """Yield a new file, which takes the place of `target` if nothing fails; raises OSError where it cannot."""
     beside = target.with_name(f".{target.name[:40]}.{os.urandom(6).hex()}.tmp")
     try:
         with beside.open("xb") as file:
-            write(file)
+            yield file
             file.flush()
             os.fsync(file.fileno())
         if target.exists():

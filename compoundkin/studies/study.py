@@ -47,7 +47,7 @@ from compoundkin.studies.study_document import study_arguments, study_text
 from compoundkin.studies.study_folder import FolderStore, prepare_folder
 from compoundkin.studies.study_plan import StudyPlan
 from compoundkin.studies.study_result import StudyResult
-from compoundkin.studies.study_rows import MemoryStore, RunStore, StudyRows, piece_size, pieces_of
+from compoundkin.studies.study_rows import MemoryStore, RunStore, StudyRows, pieces_of, whole_blocks
 
 Progress: TypeAlias = Callable[[int, int], Any]
 # Errors that stop a run and are no programming error: dead workers, full disks, lost connections.
@@ -69,7 +69,12 @@ def run_study(
     """
     with workers(on, threads) as computing, suppress_pose_warnings():
         missing = list(store.missing())
-        size = piece_size(store.plan.program, computing.number(), chunk)
+
+        def size() -> int:
+            if chunk:
+                return whole_blocks(store.plan.program, chunk)
+            return store.piece_size(computing.number(), is_local=on is None)
+
         tell = progress or (lambda done, count: None)
         done, count = len(store.plan) - sum(map(len, missing)), len(store.plan)
         tell(done, count)

@@ -13,19 +13,20 @@ import re
 import secrets
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from importlib import import_module
+from math import ceil
 from pathlib import Path
 from time import time
-from typing import Any, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, LikelySlip, Problem, StudyStopped, warn
 from compoundkin.base.suffixes import suffix_for
-from compoundkin.files.atomic import write_atomically
+from compoundkin.files.atomic import atomic_file, write_atomically
 from compoundkin.files.saved_files import parquet
 from compoundkin.studies.samples import sample_from
 from compoundkin.studies.samples.variations import variation_from
@@ -39,7 +40,19 @@ from compoundkin.studies.study_plan import (
     mechanism_of_document,
 )
 from compoundkin.studies.study_program import StudyColumn, version_text, versions
-from compoundkin.studies.study_rows import RunStore, StudyRows, cached_program, compute_rows, missing_rows
+from compoundkin.studies.study_rows import (
+    MOST_BYTES,
+    MOST_ROWS,
+    RunStore,
+    StudyRows,
+    cached_program,
+    compute_rows,
+    missing_rows,
+    piece_size,
+    pieces_of,
+    rows_of_bytes,
+    whole_blocks,
+)
 
 
 def open_folder(path: str | os.PathLike[str]) -> tuple[StudyPlan, RowsInFolder]:
@@ -181,10 +194,12 @@ class PartTask:
         program = cached_program(self.plan)
         if other := version_text(versions(program), self.versions):
             raise InvalidInput(Problem("on", f"a worker has {other}", "give all workers the same versions"))
-        content = part_content(self.plan.columns, compute_rows(self.plan, rows), self.folder.fingerprint)
+        size = piece_size(program)
+        found = (compute_rows(self.plan, piece) for piece in pieces_of([rows], lambda: size))
+        columns, fingerprint = self.plan.columns, self.folder.fingerprint
         if not is_reachable(self.folder.path, self.token):
-            return content
-        self.folder.write(rows, content)
+            return part_content(columns, found, fingerprint)
+        self.folder.write(rows, lambda file: write_part(file, columns, found, fingerprint))
         return None
 
 
@@ -203,6 +218,19 @@ class FolderStore(RunStore):
 
     folder: StudyFolder
     head: FolderHead
+    # whether workers write their parts, which one tells by its first answer
+    _answers: set[bool] = field(default_factory=set)
+
+    def piece_size(self, workers: int, is_local: bool) -> int:
+        """Return the number of rows of the next part.
+
+        Workers that write parts themselves compute them piece by piece: these are larger than those that are sent.
+        """
+        program, small = self.plan.program, super().piece_size(workers, is_local)
+        if not is_local and self._answers != {True}:
+            return small
+        large = min(rows_of_bytes(program.columns, PART_BYTES), ceil(program.count / (PARTS_EACH * workers)))
+        return max(small, whole_blocks(program, large))
 
     def missing(self) -> Iterator[range]:
         """Yield the rows that are in no part; removes old files of killed writers."""
@@ -216,8 +244,9 @@ class FolderStore(RunStore):
 
     def take(self, rows: range, answer: bytes | None) -> None:
         """Write a part that a worker has sent."""
+        self._answers.add(answer is None)
         if answer is not None:
-            self.folder.write(rows, answer)
+            self.folder.write(rows, lambda file: file.write(answer))
 
     def finished(self) -> RowsInFolder:
         """Return all rows; raises StudyStopped where parts are missing."""
@@ -235,6 +264,9 @@ class FolderStore(RunStore):
         return f"{there:,} of {len(self.plan):,} rows are written in {self.folder.path}: run again to continue"
 
 
+# A part has at most so many bytes before they are packed; a worker writes so many at least where there are rows enough,
+# so that little is computed again when a run goes on.
+PART_BYTES, PARTS_EACH = 2**27, 32
 _SUFFIX = suffix_for("table", "parquet")
 _PART = re.compile(rf"rows-(\d+)-(\d+){re.escape(_SUFFIX)}")
 # Temporary files of killed writers; younger ones (seconds) may belong to another run.
@@ -260,17 +292,19 @@ class StudyFolder:
         """Return the path of the part of some rows."""
         return self.path / f"rows-{rows.start:09d}-{rows.stop:09d}{_SUFFIX}"
 
-    def write(self, rows: range, content: bytes) -> None:
+    def write(self, rows: range, fill: Callable[[BinaryIO], Any]) -> None:
         """Write the part of some rows.
 
         Raises InvalidInput where it cannot be written, unless another run has written these rows meanwhile: a run that
         completes the folder removes temporary files.
         """
+        part = self.part(rows)
         try:
-            write_atomically(self.part(rows), lambda file: file.write(content))
-        except InvalidInput:
+            with atomic_file(part) as file:
+                fill(file)
+        except OSError as error:
             if any(one.stop > rows.start for one in self.missing(rows.stop)):
-                raise
+                raise InvalidInput(Problem(str(part), f"it cannot be written: {error.strerror or error}")) from None
 
     def parts(self) -> tuple[StudyPart, ...]:
         """Return the existing parts, in order.
@@ -316,11 +350,10 @@ class RowsInFolder(StudyRows):
 
     def column(self, name: str) -> Number:
         """Return all values of a column. Raises InvalidInput where there is no part yet."""
-        (column,) = (one for one in self.columns if one.name == name)
         found: Number | None = None
         start = 0
-        for part in self.parts:
-            values = part_columns(part.path, [column])[name][part.fresh.start - part.rows.start :]
+        for piece in self.pieces(name):
+            values = piece[name]
             if found is None:
                 found = np.empty((self.count, *values.shape[1:]), values.dtype)
             found[start : start + len(values)] = values
@@ -330,16 +363,16 @@ class RowsInFolder(StudyRows):
         return found
 
     def pieces(self, *names: str) -> Iterator[dict[str, Number]]:
-        """Yield some columns of each part."""
+        """Yield some columns of pieces of each part."""
         wanted = [one for one in self.columns if one.name in names]
         for part in self.parts:
-            found = part_columns(part.path, wanted)
-            yield {name: found[name][part.fresh.start - part.rows.start :] for name in names}
+            yield from part_pieces(part.path, wanted, part.fresh.start - part.rows.start)
 
-    def picked(self, places: Number) -> dict[str, Number]:
-        """Return all columns of some rows."""
+    def picked(self, places: Number, *names: str) -> dict[str, Number]:
+        """Return some columns, or all, of some rows."""
+        columns = [one for one in self.columns if one.name in names] if names else self.columns
         if not len(places):
-            return {one.name: np.empty(0) for one in self.columns}
+            return {one.name: np.empty(0) for one in columns}
         starts = np.cumsum([0, *(len(part.fresh) for part in self.parts)])
         owner = np.searchsorted(starts, places, side="right") - 1
         order: list[Number] = []
@@ -347,33 +380,44 @@ class RowsInFolder(StudyRows):
         for k in np.unique(owner):
             part, mine = self.parts[k], np.flatnonzero(owner == k)
             inside = places[mine] - starts[k] + part.fresh.start - part.rows.start
-            found.append(part_rows(part.path, self.columns, inside))
+            found.append(part_rows(part.path, columns, inside))
             order.append(mine)
         back = np.argsort(np.concatenate(order))
-        return {one.name: np.concatenate([rows[one.name] for rows in found])[back] for one in self.columns}
+        return {one.name: np.concatenate([rows[one.name] for rows in found])[back] for one in columns}
 
 
 # The key of a part's metadata that identifies its study.
 STUDY = b"study"
-# Rows in a row group: so many are read at once.
+# Rows in a row group at most: so many are read at once.
 ROWS_TOGETHER = 8192
 
 
-def part_content(columns: Iterable[StudyColumn], found: Mapping[str, Any], fingerprint: str) -> bytes:
-    """Return the bytes of a part, with units, and the fingerprint of its study."""
-    arrow, write = import_module("pyarrow"), parquet().write_table
-    chosen = list(columns)
-    arrays = [_array(arrow, found[column.name], column.width) for column in chosen]
-    units = [{"unit": column.unit} if column.unit else None for column in chosen]
-    fields = [
-        arrow.field(one.name, array.type, metadata=unit) for one, array, unit in zip(chosen, arrays, units, strict=True)
-    ]
-    schema = arrow.schema(fields, metadata={STUDY: fingerprint, b"angles": b"radians"})
-    texts = [field.name for field in fields if field.type == arrow.string()]
+def part_content(columns: Iterable[StudyColumn], pieces: Iterable[Mapping[str, Any]], fingerprint: str) -> bytes:
+    """Return the bytes of a part."""
     content = io.BytesIO()
-    table = arrow.Table.from_arrays(arrays, schema=schema)
-    write(table, content, row_group_size=ROWS_TOGETHER, use_dictionary=texts, write_page_checksum=True)
+    write_part(content, columns, pieces, fingerprint)
     return content.getvalue()
+
+
+def write_part(
+    file: BinaryIO, columns: Iterable[StudyColumn], pieces: Iterable[Mapping[str, Any]], fingerprint: str
+) -> None:
+    """Write a part, piece by piece, with units, and the fingerprint of its study."""
+    arrow, writer, chosen = import_module("pyarrow"), None, list(columns)
+    try:
+        for found in pieces:
+            arrays = [_array(arrow, found[column.name], column.width) for column in chosen]
+            if writer is None:
+                units = [{"unit": column.unit} if column.unit else None for column in chosen]
+                fields = [arrow.field(one.name, array.type, metadata=unit)
+                          for one, array, unit in zip(chosen, arrays, units, strict=True)]  # fmt: skip
+                schema = arrow.schema(fields, metadata={STUDY: fingerprint, b"angles": b"radians"})
+                texts = [each.name for each in fields if each.type == arrow.string()]
+                writer = parquet().ParquetWriter(file, schema, use_dictionary=texts, write_page_checksum=True)
+            writer.write_table(arrow.Table.from_arrays(arrays, schema=writer.schema), row_group_size=ROWS_TOGETHER)
+    finally:
+        if writer is not None:
+            writer.close()
 
 
 def _array(arrow: Any, values: Number, width: int | None) -> Any:
@@ -401,6 +445,16 @@ def part_columns(path: Path, columns: Sequence[StudyColumn]) -> dict[str, Number
     return {column.name: _values(table, column) for column in columns}
 
 
+def part_pieces(path: Path, columns: Sequence[StudyColumn], start: int) -> Iterator[dict[str, Number]]:
+    """Yield some columns of a part from a row on, piece by piece. Raises InvalidInput where it is damaged."""
+    names, most = [column.name for column in columns], max(1, min(MOST_ROWS, rows_of_bytes(columns, MOST_BYTES)))
+    with _opened(path) as file:
+        for batch in file.iter_batches(most, columns=names):
+            if start < len(batch):
+                yield {column.name: _values(batch, column)[start:] for column in columns}
+            start = max(start - len(batch), 0)
+
+
 @contextmanager
 def _opened(path: Path) -> Iterator[Any]:
     """Yield a part whose pages are verified as they are read. Raises InvalidInput for a damaged or missing part."""
@@ -414,20 +468,28 @@ def _opened(path: Path) -> Iterator[Any]:
         raise InvalidInput(Problem(str(path), "the part is damaged", remedy)) from None
 
 
-def part_rows(path: Path, columns: Iterable[StudyColumn], places: Number) -> dict[str, Number]:
-    """Return all columns of some rows of a part, by their places in it. Raises InvalidInput where it is damaged."""
-    groups = np.unique(places // ROWS_TOGETHER)
+def part_rows(path: Path, columns: Sequence[StudyColumn], places: Number) -> dict[str, Number]:
+    """Return some columns of some rows of a part, by their places in it. Raises InvalidInput where it is damaged."""
     with _opened(path) as file:
-        table = file.read_row_groups(groups.tolist())
+        sizes = [file.metadata.row_group(k).num_rows for k in range(file.num_row_groups)]
+        starts = np.cumsum([0, *sizes])
+        owner = np.searchsorted(starts, places, side="right") - 1
+        groups, which = np.unique(owner, return_inverse=True)
+        table = file.read_row_groups(groups.tolist(), [column.name for column in columns])
     # the groups that are read follow each other
-    near = np.searchsorted(groups, places // ROWS_TOGETHER) * ROWS_TOGETHER + places % ROWS_TOGETHER
+    near = np.cumsum([0, *(sizes[k] for k in groups)])[which] + places - starts[owner]
     return {column.name: _values(table, column)[near] for column in columns}
 
 
 def _values(table: Any, column: StudyColumn) -> Number:
-    found = table.column(column.name).combine_chunks()
+    """Return a column of a table, or of one batch of it."""
+    found = table.column(column.name)
+    found = found.combine_chunks() if hasattr(found, "combine_chunks") else found
     if column.width is not None:
         return np.asarray(found.flatten()).reshape(-1, column.width)
     if str(found.type) == "string":
-        return np.array(found.to_pylist(), dtype=object)
+        # few texts, each of very many rows: one object for all of a text
+        encoded = found.dictionary_encode()
+        texts = np.array([*encoded.dictionary.to_pylist(), None], dtype=object)
+        return texts[encoded.indices.fill_null(-1).to_numpy(zero_copy_only=False)]
     return np.asarray(found.to_numpy(zero_copy_only=False))

@@ -171,8 +171,13 @@ class StudyResult(DisplaysHtml, ShortRepr):
     def counts(self, name: str, *, assembled: bool = False) -> Counter[Any]:
         """Return how many rows have each value of a state, perhaps only of those that assemble."""
         found: Counter[Any] = Counter()
-        for piece in self.rows.pieces(name, ASSEMBLED):
-            found.update((piece[name][piece[ASSEMBLED]] if assembled else piece[name]).tolist())
+        for piece in self.rows.pieces(*dict.fromkeys([name, ASSEMBLED])):
+            values = piece[name][piece[ASSEMBLED]] if assembled else piece[name]
+            if values.dtype == bool:
+                many = int(np.count_nonzero(values))
+                found.update({key: count for key, count in ((True, many), (False, len(values) - many)) if count})
+            else:
+                found.update(values.tolist())
         return found
 
     def _rows(self, places: Number) -> tuple[dict[str, Any], ...]:
@@ -271,28 +276,53 @@ def _in_order(
     pieces: Callable[[], Iterable[Number]], count: int, low: float, high: float, wanted: Sequence[int]
 ) -> list[float]:
     """Return the values at places in order of all those from `low` to `high`, of which there are so many."""
+    if low == high:
+        return [low] * len(wanted)
+    if count <= MOST_SORTED or not high / 2.0 - low / 2.0:
+        return [float(value) for value in np.sort(np.concatenate(list(pieces())))[list(wanted)]]
+    sizes = np.zeros(CLASSES, dtype=int)
+    for piece in pieces():
+        sizes += np.bincount(_classes(piece, low, high), minlength=CLASSES)
+    before = np.concatenate([[0], np.cumsum(sizes)])
+    owners = np.unique(np.searchsorted(before, wanted, side="right") - 1)
+    if len(owners) > 1 and sizes[owners].sum() > MOST_SORTED:
+        own = [[k for k in wanted if before[owner] <= k < before[owner + 1]] for owner in owners]
+        alone = (_in_order_of_classes(pieces, (low, high), sizes, np.array([one]), k)
+                 for one, k in zip(owners, own, strict=True))  # fmt: skip
+        return [value for found in alone for value in found]
+    return _in_order_of_classes(pieces, (low, high), sizes, owners, wanted)
+
+
+def _in_order_of_classes(
+    pieces: Callable[[], Iterable[Number]],
+    ends: tuple[float, float],
+    sizes: Number,
+    owners: Number,
+    wanted: Sequence[int],
+) -> list[float]:
+    """Return the values at places in order, which are in some classes, of so many values each."""
+    is_wanted = np.zeros(CLASSES, dtype=bool)
+    is_wanted[owners] = True
 
     def inside() -> Iterator[Number]:
-        return (piece[(piece >= low) & (piece <= high)] for piece in pieces())
+        return (piece[is_wanted[_classes(piece, *ends)]] for piece in pieces())
 
-    if count <= MOST_SORTED or low == high:
-        values = np.full(1, low) if low == high else np.concatenate(list(inside()))
-        return [float(np.sort(values)[min(k, len(values) - 1)]) for k in wanted]
-    bounds = np.linspace(low, high, CLASSES + 1)
-    sizes = np.zeros(CLASSES, dtype=int)
-    ends = np.full((2, CLASSES), [[np.inf], [-np.inf]])
-    for piece in inside():
-        which = np.clip(np.searchsorted(bounds, piece, side="right") - 1, 0, CLASSES - 1)
-        sizes += np.bincount(which, minlength=CLASSES)
-        np.minimum.at(ends[0], which, piece)
-        np.maximum.at(ends[1], which, piece)
-    before = np.concatenate([[0], np.cumsum(sizes)])
-    owners = np.searchsorted(before, wanted, side="right") - 1
-    found: list[float] = []
-    for owner in dict.fromkeys(owners.tolist()):
-        inner = [k - int(before[owner]) for k, own in zip(wanted, owners, strict=True) if own == owner]
-        found += _in_order(pieces, int(sizes[owner]), float(ends[0, owner]), float(ends[1, owner]), inner)
-    return found
+    before, among = np.concatenate([[0], np.cumsum(sizes)]), np.concatenate([[0], np.cumsum(sizes[owners])])
+    which = np.searchsorted(before[owners], wanted, side="right") - 1
+    places = (among[which] + np.asarray(wanted) - before[owners][which]).tolist()
+    low, high = np.inf, -np.inf
+    for piece in inside() if among[-1] > MOST_SORTED else ():
+        low, high = min(low, piece.min(initial=np.inf)), max(high, piece.max(initial=-np.inf))
+    if not low <= high:
+        # few enough to be sorted
+        low, high = ends
+    return _in_order(inside, int(among[-1]), float(low), float(high), places)
+
+
+def _classes(values: Number, low: float, high: float) -> Number:
+    """Return the classes of values from `low` to `high`: none is in a higher class than a greater one."""
+    parts = (values / 2.0 - low / 2.0) / (high / 2.0 - low / 2.0)
+    return np.minimum((parts * CLASSES).astype(np.int64), CLASSES - 1)
 
 
 def _between_neighbours(one: float, other: float, share: float) -> float:

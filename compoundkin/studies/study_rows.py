@@ -39,8 +39,8 @@ class StudyRows(ABC, ShortRepr):
         """Yield some columns of all rows, piece by piece in their order: no more is in memory."""
 
     @abstractmethod
-    def picked(self, places: Number) -> dict[str, Number]:
-        """Return all columns of some rows, by their places among the existing ones."""
+    def picked(self, places: Number, *names: str) -> dict[str, Number]:
+        """Return some columns, or all, of some rows, by their places among the existing ones."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -63,9 +63,9 @@ class RowsInMemory(StudyRows):
         for start in range(0, self.count, MOST_ROWS):
             yield {name: self.column(name)[start : start + MOST_ROWS] for name in names}
 
-    def picked(self, places: Number) -> dict[str, Number]:
-        """Return all columns of some rows."""
-        return {name: array[places] for name, array in self.arrays.items()}
+    def picked(self, places: Number, *names: str) -> dict[str, Number]:
+        """Return some columns, or all, of some rows."""
+        return {name: self.arrays[name][places] for name in names or self.arrays}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -77,6 +77,10 @@ class RunStore(ABC, ShortRepr):
     @abstractmethod
     def missing(self) -> Iterator[range]:
         """Yield the missing rows."""
+
+    def piece_size(self, workers: int, is_local: bool) -> int:
+        """Return the number of rows of the next piece, for so many workers; local ones are threads of this process."""
+        return piece_size(self.plan.program, workers)
 
     @property
     @abstractmethod
@@ -167,23 +171,34 @@ PIECES_EACH = 4
 _BYTES = 8
 
 
-def piece_size(program: StudyProgram, workers: int, chunk: int | None) -> int:
-    """Return the number of rows of a piece in whole blocks, by `chunk` or the number of workers and memory."""
-    width = sum(column.width or 1 for column in program.columns)
-    fitting = min(MOST_ROWS, MOST_BYTES // (_BYTES * width), ceil(program.sample.count / (PIECES_EACH * workers)))
-    rows = chunk or fitting
+def piece_size(program: StudyProgram, workers: int = 1) -> int:
+    """Return the number of rows of a piece that is computed in memory, in whole blocks."""
+    fitting = min(
+        MOST_ROWS, rows_of_bytes(program.columns, MOST_BYTES), ceil(program.sample.count / (PIECES_EACH * workers))
+    )
+    return whole_blocks(program, fitting)
+
+
+def rows_of_bytes(columns: Iterable[StudyColumn], count: int) -> int:
+    """Return how many rows of some columns take so many bytes."""
+    return count // (_BYTES * sum(column.width or 1 for column in columns))
+
+
+def whole_blocks(program: StudyProgram, rows: int) -> int:
+    """Return a number of rows, or the next greater one of whole blocks."""
     return max(1, ceil(rows / program.block)) * program.block
 
 
-def pieces_of(missing: Iterable[range], size: int) -> Iterator[range]:
-    """Return missing rows in pieces that begin and end at multiples of a size.
+def pieces_of(missing: Iterable[range], next_size: Callable[[], int]) -> Iterator[range]:
+    """Return missing rows in pieces that begin and end at multiples of a size, which is asked for each piece.
 
-    >>> list(pieces_of([range(3, 9), range(12, 13)], 4))
+    >>> list(pieces_of([range(3, 9), range(12, 13)], lambda: 4))
     [range(3, 4), range(4, 8), range(8, 9), range(12, 13)]
     """
     for rows in missing:
         start = rows.start
         while start < rows.stop:
+            size = next_size()
             stop = min(rows.stop, (start // size + 1) * size)
             yield range(start, stop)
             start = stop

@@ -115,16 +115,17 @@ def _kept_rows(path: ck.results.CompiledPath, crank: Any, rounds: int) -> Iterat
         subjects["C, vectors"] = lambda: six_bar_in_c.compiled("vectors")(crank, [*found.values()])
     task = f"six-bar, G to acceleration into kept arrays, {MANY:,} poses, each"
     yield from compared(task, subjects, MANY, 2 * rounds, "C, vectors")
-    rates = ("position", "velocity", "acceleration"), ("angle", "angular_velocity", "angular_acceleration")
-    names = [f"{one}.{word}" for many, words in zip((six_bar.POINTS, six_bar.LINKS), rates, strict=True)
-             for one in many for word in words]  # fmt: skip
+    names = six_bar_in_c.OUTPUTS
     whole = ck.compile(six_bar.mechanism(), names)
     everything: dict[str, Callable[[], Any]] = {
         "program": lambda: whole(crank, speed=six_bar.SPEED),
         "NumPy by hand": lambda: six_bar.by_hand(crank),
         "memory of the results, filled": lambda: [np.ones(MANY, complex) for _ in range(18)],
     }
-    yield from compared(f"six-bar, all {len(names)} outputs, {MANY:,} poses, each", everything, MANY, rounds, "program")
+    if in_c(crank):
+        everything["C, vectors"] = lambda: six_bar_in_c.everything(crank)
+    beside = "C, vectors" if "C, vectors" in everything else "program"
+    yield from compared(f"six-bar, all {len(names)} outputs, {MANY:,} poses, each", everything, MANY, rounds, beside)
 
 
 def four_bar_rows() -> Iterator[Row]:

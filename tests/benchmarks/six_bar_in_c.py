@@ -1,7 +1,8 @@
 """The six-bar of `six_bar` in C by hand: point G with velocity and acceleration, plainly and eight poses at a time.
 
 The second uses the vector extensions of gcc, a polynomial for sine and cosine, and fused multiplications, so that it
-runs at the speed of the arithmetic units. Both write complex numbers, as NumPy holds them.
+runs at the speed of the arithmetic units. Both write complex numbers, as NumPy holds them. *everything* is written as
+the second: position, velocity and acceleration of four points, and angle, its rate and acceleration of four links.
 """
 
 from __future__ import annotations
@@ -75,8 +76,7 @@ void six_bar(const double *crank, double w, double *place, double *speed, double
 """
 )
 
-VECTORS = (
-    r"""
+LANES = r"""
 typedef double T __attribute__((vector_size(64)));
 typedef long L __attribute__((vector_size(64)));
 typedef double U __attribute__((vector_size(64), aligned(8)));
@@ -99,6 +99,11 @@ static inline void put(double *out, T x, T y) {
   *(U *)out = __builtin_shufflevector(x, y, 0, 8, 1, 9, 2, 10, 3, 11);
   *(U *)(out + 8) = __builtin_shufflevector(x, y, 4, 12, 5, 13, 6, 14, 7, 15);
 }
+"""
+
+VECTORS = (
+    LANES
+    + r"""
 static inline void eight(T x, double w, double *place, double *speed, double *acceleration) {
     T c, s;
     turn(x, &c, &s);
@@ -123,18 +128,86 @@ void six_bar(const double *crank, double w, double *place, double *speed, double
 """
 )
 
-TEXTS = {"plain": PLAIN, "vectors": VECTORS}
+# The arctangent is that of S. L. Moshier's Cephes library (atan.c): a rational function below 0.66, of (z - 1)/(z + 1)
+# above. Angles are made continuous along the motion after.
+EVERYTHING = (
+    LANES
+    + r"""
+static inline T choose(L yes, T one, T other) { return (T)(((L)one & yes) | ((L)other & ~yes)); }
+static inline T angle(T y, T x) {
+  L minus = (L)x < 0, signs = (L)y & (1L << 63);
+  T a = (T)((L)x & ~(1L << 63)), b = (T)((L)y & ~(1L << 63));
+  L steep = b > a;
+  T z = choose(steep, a, b) / choose(steep, b, a);
+  L far = z > 0.66;
+  T one = z * 0.0 + 1.0;
+  z = choose(far, z - 1.0, z) / choose(far, z + 1.0, one);
+  T s = z * z;
+  T p = s * ((((-8.750608600031904122785e-1 * s - 1.615753718733365076637e1) * s - 7.500855792314704667340e1) * s
+      - 1.228866684490136173410e2) * s - 6.485021904942025371773e1)
+      / (((((s + 2.485846490142306297962e1) * s + 1.650270098316988542046e2) * s + 4.328810604912902668951e2) * s
+      + 4.853903996359136964868e2) * s + 1.945506571482613964425e2);
+  T found = z * p + z + choose(far, one * 7.85398163397448309616e-1, one * 0.0);
+  found = choose(steep, 1.57079632679489661923 - found, found);
+  found = choose(minus, 3.14159265358979323846 - found, found);
+  return (T)((L)found ^ signs);
+}
+static inline void eight(T x, double w, double **out, long k) {
+    T c, s;
+    turn(x, &c, &s);
+"""
+    + BODY
+    + r"""
+    T al3 = -((adx - q2 * ax + q3 * rx) * ax + (ady - q2 * ay + q3 * ry) * ay) * det;
+    T one = x * 0.0 + 1.0;
+    double **o = out;
+    put(*o++ + 2 * k, dx, dy); put(*o++ + 2 * k, vdx, vdy); put(*o++ + 2 * k, adx, ady);
+    put(*o++ + 2 * k, dx + ax, dy + ay); put(*o++ + 2 * k, -w3 * ry, w3 * rx);
+    put(*o++ + 2 * k, -q3 * rx - al3 * ry, al3 * rx - q3 * ry);
+    put(*o++ + 2 * k, sx, sy + FY); put(*o++ + 2 * k, vx, vy); put(*o++ + 2 * k, bx, by);
+    for (int i = 0; i < 6; i += 2) put(*o++ + 2 * k, g[i], g[i + 1]);
+    T links[12] = {x, w * one, 0.0 * one, angle(ay, ax), w2, al2, angle(ry, rx), w3, al3, angle(sy, sx), w4, al4};
+    for (int i = 0; i < 12; i++) *(U *)(*o++ + k) = links[i];
+}
+void six_bar(const double *crank, double w, double **out, long n) {
+  long k = 0;
+  for (; k + 8 <= n; k += 8) eight(*(const U *)(crank + k), w, out, k);
+  if (k < n) {
+    double in[8] = {0}, some[24][16], *rows[24];
+    memcpy(in, crank + k, (n - k) * sizeof(double));
+    for (int i = 0; i < 24; i++) rows[i] = some[i];
+    eight(*(const U *)in, w, rows, 0);
+    for (int i = 0; i < 24; i++) memcpy(out[i] + (i < 12 ? 2 * k : k), some[i], (n - k) * (i < 12 ? 16 : 8));
+  }
+  for (int i = 15; i < 24; i += 3) {
+    double turns = 0.0, before = out[i][0];
+    for (k = 1; k < n; k++) {
+      double now = out[i][k];
+      if (fabs(now - before) > 3.14159265358979323846) turns -= now > before ? 1.0 : -1.0;
+      before = now;
+      if (turns) out[i][k] += turns * 6.28318530717958647692;
+    }
+  }
+}
+"""
+)
+
+# What *everything* writes, in its order.
+RATES = ("position", "velocity", "acceleration"), ("angle", "angular_velocity", "angular_acceleration")
+OUTPUTS = [f"{one}.{word}" for many, words in zip((six_bar.POINTS, six_bar.LINKS), RATES, strict=True)
+           for one in many for word in words]  # fmt: skip
+TEXTS, WHOLE = {"plain": PLAIN, "vectors": VECTORS}, {"everything": EVERYTHING}
 Call = Callable[[Any, list[Any]], None]
 
 
 @cache
 def compiled(kind: str) -> Call:
-    """A function of crank angles and three complex arrays that it fills; raises OSError where there is no gcc."""
+    """A function of crank angles and the arrays that it fills; raises OSError where there is no gcc."""
     numbers = {name: getattr(six_bar, name) for name in ("ED", "DA", "AB", "FG")}
     numbers |= {"DCX": six_bar.DC.real, "DCY": six_bar.DC.imag, "BX": six_bar.B.real, "FY": six_bar.F.imag}
     folder = Path(tempfile.mkdtemp())
     source, library = folder / "six_bar.c", folder / "six_bar.so"
-    source.write_text(HEAD % {name: float(value) for name, value in numbers.items()} + TEXTS[kind])
+    source.write_text(HEAD % {name: float(value) for name, value in numbers.items()} + (TEXTS | WHOLE)[kind])
     options = [
         "-O3",
         "-march=native",
@@ -147,9 +220,14 @@ def compiled(kind: str) -> Call:
     subprocess.run(["gcc", *options, "-o", library, source, "-lm"], check=True)
     function = ctypes.CDLL(str(library)).six_bar
     pointer = ctypes.c_void_p
-    function.argtypes, function.restype = [pointer, ctypes.c_double, pointer, pointer, pointer, ctypes.c_long], None
+    outputs = [pointer] if kind in WHOLE else [pointer] * 3
+    function.argtypes, function.restype = [pointer, ctypes.c_double, *outputs, ctypes.c_long], None
 
     def call(crank: Any, found: list[Any]) -> None:
+        if kind in WHOLE:
+            places = (pointer * len(found))(*(array.ctypes.data for array in found))
+            function(crank.ctypes.data, six_bar.SPEED, places, len(crank))
+            return
         function(crank.ctypes.data, six_bar.SPEED, *(array.ctypes.data for array in found), len(crank))
 
     return call
@@ -159,4 +237,11 @@ def asked(kind: str, crank: Any) -> list[Any]:
     """Position, velocity and acceleration of G."""
     found = [np.empty(len(crank), complex) for _ in range(3)]
     compiled(kind)(crank, found)
+    return found
+
+
+def everything(crank: Any) -> list[Any]:
+    """All of `OUTPUTS`."""
+    found = [np.empty(len(crank), complex) for _ in range(12)] + [np.empty(len(crank)) for _ in range(12)]
+    compiled("everything")(crank, found)
     return found

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.studies import study_result
+from compoundkin.studies import study_folder, study_result, study_rows
 from compoundkin.studies.study_folder import is_reachable
 from tests.source import ROOT
 from tests.studies.test_study import assert_same, six_bar
@@ -68,6 +68,41 @@ def test_a_folder_has_the_rows_and_the_study(whole: ck.results.StudyResult, tmp_
     again = [ck.quantity(one.motion(last), "G.position").values for one in (opened, whole)]
     assert np.array_equal(*again)
     assert opened.mechanism(last) == whole.mechanism(last)
+
+
+def test_a_part_is_computed_and_read_piece_by_piece(
+    whole: ck.results.StudyResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(study_rows, "MOST_ROWS", 4096)
+    monkeypatch.setattr(study_folder, "MOST_ROWS", 3000)
+    result = six_bar(COUNT).run(tmp_path / "one", chunk=COUNT)
+    assert names(tmp_path / "one") == [f"rows-000000000-{COUNT:09d}.parquet", "study.json"]
+    assert_same(result, whole)
+    assert len(list(result.rows.pieces("row"))) > 4
+    places = np.array([9000, 5, 4095, 4096, 16383, 4097])
+    for name, values in result.rows.picked(places).items():
+        np.testing.assert_array_equal(values, whole[name][places])
+    assert list(result.rows.picked(places, "row")) == ["row"]
+    # without a chunk threads write larger parts than they compute at once, within bytes
+    monkeypatch.setattr(study_folder, "PARTS_EACH", 1)
+    for most, count in ((2**27, 2), (0, 4)):
+        monkeypatch.setattr(study_folder, "PART_BYTES", most)
+        assert_same(six_bar(COUNT).run(tmp_path / str(count), threads=2), whole)
+        assert len(names(tmp_path / str(count))) == count + 1
+
+
+def test_an_error_within_a_part_leaves_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def stopping(plan: object, rows: range) -> dict[str, np.ndarray]:
+        if rows.start:
+            raise ZeroDivisionError("a fault of the program")
+        return computed(plan, rows)
+
+    computed = study_folder.compute_rows
+    monkeypatch.setattr(study_rows, "MOST_ROWS", 4096)
+    monkeypatch.setattr(study_folder, "compute_rows", stopping)
+    with pytest.raises(ZeroDivisionError, match="a fault of the program"):
+        six_bar(COUNT).run(tmp_path / "new", chunk=COUNT, threads=1)
+    assert names(tmp_path / "new") == ["study.json"]
 
 
 def test_parts_of_other_chunks_and_damaged_ones_are_mended(whole: ck.results.StudyResult, tmp_path: Path) -> None:

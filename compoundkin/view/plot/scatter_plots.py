@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
+from compoundkin.studies.study_program import StudyColumn
 from compoundkin.studies.study_result import StudyResult, pareto_rows
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.canvas import PointLabel, broken_label, value_text
@@ -107,10 +108,10 @@ def scatter_matrix(
     chosen = among.figures(names)
     shown = chosen if names else chosen[:MOST_COLUMNS]
     by = None if colour is None else among.figure(colour)
-    rows = drawn_rows(np.arange(len(result)))
+    rows = drawn_rows(len(result))
     shades = None if by is None else among.values(by, rows)
     columns = tuple(among.values(one, rows) for one in shown)
-    drawing = MatrixDrawing(columns, among.assembled[rows], None if shades is None else shades.values)
+    drawing = MatrixDrawing(columns, among.assembled(rows), None if shades is None else shades.values)
     wide = max(NARROWEST, PANEL * len(columns) + BESIDE)
     with plot_style.styled():
         some = f"the first {len(shown)} of {len(chosen)} columns" if shown != chosen else ""
@@ -239,23 +240,23 @@ def pareto(
     """
     among = StudyColumns(result)
     upward = _upward((first, second), greatest)
-    both = [among.values(among.figure(name)) for name in (first, second)]
-    shades = None if colour is None else among.values(among.figure(colour))
-    front = front_rows(both, among.assembled, upward)
-    known = np.flatnonzero(among.assembled & np.isfinite(both[0].values) & np.isfinite(both[1].values))
-    others = np.setdiff1d(drawn_rows(known), front)
+    figures = [among.figure(name) for name in (first, second)]
+    by = None if colour is None else among.figure(colour)
+    known, front = known_and_best(among, figures, upward)
+    others = np.setdiff1d(_known_rows(among, figures, drawn_rows(known.count)), front)
+    rows = np.concatenate([others, front])
+    both = [replace(among.values(one, rows), scale=known.scale(k)) for k, one in enumerate(figures)]
+    dots = FrontDrawing(both, len(others), front, None if by is None else among.values(by, rows))
     with plot_style.styled():
-        missing = "" if len(known) else "none has both figures"
+        missing = "" if known.count else "none has both figures"
         text = title_with_summary(
-            among.title if title is None else title, among.summary(len(others) + len(front), len(known)), missing
+            among.title if title is None else title, among.summary(len(rows), known.count), missing
         )
         figure, (axes,) = canvas.panels(1, text, size or SIZE)
-        _dots(figure, axes, both, others, front, shades)
-        x, y = (one.values[front] for one in both)
-        axes.plot(x, y, color=COLOURS[1], linewidth=1.0, drawstyle="steps-post", zorder=0.9, label="_front")
+        dots.draw(figure, axes)
         _axes(axes, both, upward, known)
         canvas.legend_below(figure, axes.get_legend_handles_labels()[0])
-        return canvas.finished(figure, _numbers(axes, both, front, upward))
+        return canvas.finished(figure, dots.numbers(axes, upward))
 
 
 def _upward(both: Sequence[str], greatest: Sequence[str]) -> list[bool]:
@@ -266,55 +267,100 @@ def _upward(both: Sequence[str], greatest: Sequence[str]) -> list[bool]:
     return [name in greatest for name in both]
 
 
-def front_rows(both: Sequence[Plotted], assembled: Number, upward: Sequence[bool]) -> Number:
-    """Return the rows of the front, of the assembled designs."""
-    signed = [
-        np.where(assembled, -one.values if up else one.values, np.nan) for one, up in zip(both, upward, strict=True)
-    ]
-    return pareto_rows(*signed)
+@dataclass(frozen=True, eq=False)
+class KnownDesigns:
+    """How many designs have two figures, and the least and the greatest value of each, (figures, 2)."""
+
+    count: int
+    ends: Number
+
+    def scale(self, figure: int) -> float:
+        """Return the greatest size of a figure."""
+        return float(np.max(np.abs(self.ends[figure]), initial=0.0)) if self.count else 0.0
+
+
+def known_and_best(
+    among: StudyColumns, figures: Sequence[StudyColumn], upward: Sequence[bool]
+) -> tuple[KnownDesigns, Number]:
+    """Return the designs that are assembled and have two figures, and the rows of the front of these.
+
+    The front of all is that of the fronts of their pieces.
+    """
+    signs = [-1.0 if up else 1.0 for up in upward]
+    rows, best, count = np.empty(0, dtype=int), np.empty((2, 0)), 0
+    ends = np.array([[np.inf, -np.inf]] * 2)
+    for places, values in among.pieces(*figures):
+        if not len(places):
+            continue
+        count += len(places)
+        for k, own in enumerate(values):
+            ends[k] = min(ends[k, 0], own.min()), max(ends[k, 1], own.max())
+        signed = np.stack([sign * own for sign, own in zip(signs, values, strict=True)])
+        rows, best = np.concatenate([rows, places]), np.concatenate([best, signed], axis=1)
+        front = pareto_rows(*best)
+        rows, best = rows[front], best[:, front]
+    return KnownDesigns(count, ends), rows
+
+
+def _known_rows(among: StudyColumns, figures: Sequence[StudyColumn], which: Number) -> Number:
+    """Return the rows of some of the designs that have both figures, by their numbers among these."""
+    found, start = [np.empty(0, dtype=int)], 0
+    for places, _ in among.pieces(*figures):
+        found.append(places[which[(which >= start) & (which < start + len(places))] - start])
+        start += len(places)
+    return np.concatenate(found)
 
 
 def _label(figure: Plotted, upward: bool) -> str:
     return f"{figure.label}, {'greatest' if upward else 'least'}"
 
 
-def _dots(
-    figure: Any, axes: Any, both: Sequence[Plotted], others: Number, front: Number, shades: Plotted | None
-) -> None:
-    x, y = (one.values for one in both)
-    if shades is None:
-        if len(others):
-            axes.scatter(x[others], y[others], s=DESIGN_DOT, color=FAINT, label="other designs", **LOOK)
-        axes.scatter(x[front], y[front], s=FRONT_DOT, color=COLOURS[1], zorder=3.0, label="front", **LOOK)
-        return
-    rows = np.concatenate([others, front])
-    sizes = np.where(np.arange(len(rows)) < len(others), DESIGN_DOT, FRONT_DOT)
-    shown = axes.scatter(x[rows], y[rows], s=sizes, c=shades.values[rows], cmap=plot_style.FAMILY, **LOOK)
-    ring = {**LOOK, "linewidths": 1.0}
-    axes.scatter(x[front], y[front], s=FRONT_DOT, facecolors="none", edgecolors=COLOURS[1], label="front", **ring)
-    bar = figure.colorbar(shown, ax=axes, aspect=35, pad=0.02)
-    bar.set_label(shades.label)
-    bar.outline.set_visible(False)
+@dataclass(frozen=True, eq=False)
+class FrontDrawing:
+    """Two figures of the designs that are drawn: of `others`, so many, and then of the rows of the `front`."""
+
+    both: Sequence[Plotted]
+    others: int
+    front: Number
+    shades: Plotted | None
+
+    def draw(self, figure: Any, axes: Any) -> None:
+        """Draw all as dots, and the front as steps."""
+        (x, ahead_x), (y, ahead_y) = (np.split(one.values, [self.others]) for one in self.both)
+        axes.plot(ahead_x, ahead_y, color=COLOURS[1], linewidth=1.0, drawstyle="steps-post", zorder=0.9, label="_front")
+        if self.shades is None:
+            if self.others:
+                axes.scatter(x, y, s=DESIGN_DOT, color=FAINT, label="other designs", **LOOK)
+            axes.scatter(ahead_x, ahead_y, s=FRONT_DOT, color=COLOURS[1], zorder=3.0, label="front", **LOOK)
+            return
+        sizes = np.where(np.arange(len(self.shades.values)) < self.others, DESIGN_DOT, FRONT_DOT)
+        shown = axes.scatter(*(one.values for one in self.both), s=sizes, c=self.shades.values,
+                             cmap=plot_style.FAMILY, **LOOK)  # fmt: skip
+        ring = {**LOOK, "linewidths": 1.0}
+        axes.scatter(ahead_x, ahead_y, s=FRONT_DOT, facecolors="none", edgecolors=COLOURS[1], label="front", **ring)
+        bar = figure.colorbar(shown, ax=axes, aspect=35, pad=0.02)
+        bar.set_label(self.shades.label)
+        bar.outline.set_visible(False)
+
+    def numbers(self, axes: Any, upward: Sequence[bool]) -> list[PointLabel]:
+        """Return the rows of the front, beyond it; left out on a long front."""
+        beyond = complex(*(1.0 if up else -1.0 for up in upward))
+        places = zip(*(one.values[self.others :].tolist() for one in self.both), self.front.tolist(), strict=True)
+        named = places if len(self.front) <= NAMED else ()
+        return [PointLabel(axes, x, y, str(row), beyond, COLOURS[1]) for x, y, row in named]
 
 
-def _numbers(axes: Any, both: Sequence[Plotted], front: Number, upward: Sequence[bool]) -> list[PointLabel]:
-    """The rows of the front, beyond it; left out on a long front."""
-    beyond = complex(*(1.0 if up else -1.0 for up in upward))
-    places = zip(*(one.values[front].tolist() for one in both), front.tolist(), strict=True)
-    named = places if len(front) <= NAMED else ()
-    return [PointLabel(axes, x, y, str(row), beyond, COLOURS[1]) for x, y, row in named]
-
-
-def _axes(axes: Any, both: Sequence[Plotted], upward: Sequence[bool], known: Number) -> None:
+def _axes(axes: Any, both: Sequence[Plotted], upward: Sequence[bool], known: KnownDesigns) -> None:
     """Name the axes, and set their ranges and ticks."""
     axes.set_xlabel(_label(both[0], upward[0]))
     axes.set_ylabel(_label(both[1], upward[1]))
-    if not len(known):
+    if not known.count:
         canvas.write_empty(axes)
         axes.set_xticks([])
         return
-    for axis, one, most in ((axes.xaxis, both[0], canvas.ACROSS), (axes.yaxis, both[1], canvas.UPWARDS)):
-        still = canvas.constant_limits(one.values[known], one.scale)
+    drawn = zip((axes.xaxis, axes.yaxis), both, known.ends, (canvas.ACROSS, canvas.UPWARDS), strict=True)
+    for axis, one, ends, most in drawn:
+        still = canvas.constant_limits(ends, one.scale)
         if still is not None:
             axes.set(**{f"{axis.axis_name}lim": still})
         canvas.set_round_ticks(axis, one.is_angle, most)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,9 +11,10 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.kinematics.quantities import ASSEMBLED
 from compoundkin.model.attributes import GREATEST, component_names, typeset_unit, with_unit
 from compoundkin.studies.study_program import StudyColumn
-from compoundkin.studies.study_result import StudyResult
+from compoundkin.studies.study_result import StudyResult, percentiles_of
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.plot import canvas
@@ -42,17 +43,17 @@ class StudyColumns(ShortRepr):
         return {one.name: one for one in self.result.columns if one.kind != "state"}
 
     @cached_property
-    def assembled(self) -> Number:
-        """Which designs are assembled over the whole motion."""
-        return np.asarray(self.result.assembled, dtype=bool)
+    def count(self) -> int:
+        """How many designs are assembled over the whole motion."""
+        return self.result.counts(ASSEMBLED)[True]
 
     def summary(self, drawn: int = 0, among: int = 0) -> str:
         """Return how many designs there are, and how many cannot be assembled.
 
         It says how many are drawn where those are fewer than those `among` which they were picked.
         """
-        whole = len(self.assembled)
-        missing = whole - int(np.count_nonzero(self.assembled))
+        whole = len(self.result)
+        missing = whole - self.count
         said = [counted(whole, "design"), f"{missing:,} cannot be assembled" if missing else ""]
         return ", ".join(filter(None, [*said, f"{drawn:,} are drawn" if drawn < among else ""]))
 
@@ -101,10 +102,63 @@ class StudyColumns(ShortRepr):
             raise InvalidInput(Problem("quantities", what, remedy))
         return found
 
-    def values(self, column: StudyColumn, rows: Number | None = None) -> Plotted:
-        """Return a column in display units, or some rows of it."""
-        own = np.asarray(self.result[column.name])
-        return displayed_values(column.name, column.unit, own if rows is None else own[rows])
+    def values(self, column: StudyColumn, rows: Number) -> Plotted:
+        """Return some rows of a column in display units."""
+        return displayed_values(column.name, column.unit, self.result.rows.picked(rows, column.name)[column.name])
+
+    def assembled(self, rows: Number) -> Number:
+        """Return which of some designs are assembled over the whole motion."""
+        return np.asarray(self.result.rows.picked(rows, ASSEMBLED)[ASSEMBLED], dtype=bool)
+
+    def pieces(self, *columns: StudyColumn) -> Iterator[tuple[Number, tuple[Number, ...]]]:
+        """Yield the places of the assembled designs in which figures are known, and these in display units."""
+        start = 0
+        for piece in self.result.rows.pieces(*(one.name for one in columns), ASSEMBLED):
+            known = np.logical_and.reduce([piece[ASSEMBLED], *(np.isfinite(piece[one.name]) for one in columns)])
+            own = (Plotted(one.name, one.unit, piece[one.name][known]).shown.values for one in columns)
+            yield start + np.flatnonzero(known), tuple(own)
+            start += len(known)
+
+    def distribution(self, column: StudyColumn) -> FigureValues:
+        """Return the values of a figure, of the designs that are assembled."""
+        return FigureValues.of(column.name, column.unit, lambda: (own for _, (own,) in self.pieces(column)))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FigureValues(ShortRepr):
+    """Finite values of a figure in display units, which come in `pieces`, each time they are asked for.
+
+    `quantity` has their name, unit and scale; `ends` are the least and the greatest, of none there are none.
+    """
+
+    quantity: Plotted
+    pieces: Callable[[], Iterable[Number]]
+    ends: Number
+    count: int
+
+    @classmethod
+    def of(cls, name: str, unit: str, pieces: Callable[[], Iterable[Number]]) -> FigureValues:
+        """Return values with what is read of all of them."""
+        sizes = [(len(piece), piece.min(), piece.max()) for piece in pieces() if len(piece)]
+        ends = np.array([min(low for _, low, _ in sizes), max(high for *_, high in sizes)] if sizes else [])
+        shown = Plotted(name, unit, np.empty(0)).shown
+        scale = float(np.max(np.abs(ends), initial=0.0))
+        return cls(replace(shown, scale=scale), pieces, ends, sum(size for size, *_ in sizes))
+
+    def percentiles(self, shares: Sequence[float]) -> list[float]:
+        """Return percentiles; nothing without values."""
+        return percentiles_of(self.pieces, shares)
+
+    @cached_property
+    def bins(self) -> Number:
+        """The edges of the bins of a histogram."""
+        if not self.count:
+            return np.array([0.0, 1.0])
+        return bin_edges(self.ends, self.percentiles([25.0, 75.0]), self.count, self.quantity.scale)
+
+    def counts(self) -> Number:
+        """Return how many values are in each bin."""
+        return np.sum([np.histogram(piece, self.bins)[0] for piece in self.pieces()], axis=0)
 
 
 def displayed_values(name: str, unit: str, values: Number) -> Plotted:
@@ -114,17 +168,17 @@ def displayed_values(name: str, unit: str, values: Number) -> Plotted:
     return Plotted(found.name, found.unit, found.values, scale=float(np.max(known, initial=0.0)))
 
 
-def drawn_rows(rows: Number, most: int = MOST_POINTS) -> Number:
-    """Return as many of the rows as can be drawn, the same every time.
+def drawn_rows(count: int, most: int = MOST_POINTS) -> Number:
+    """Return as many of so many rows as can be drawn, the same every time.
 
     They are picked by chance: every n-th would show nothing but some levels of a grid.
 
-    >>> len(drawn_rows(np.arange(10**6))), drawn_rows(np.array([4, 7])).tolist()
-    (3000, [4, 7])
+    >>> len(drawn_rows(10**9)), drawn_rows(2).tolist()
+    (3000, [0, 1])
     """
-    if len(rows) <= most:
-        return rows
-    return np.sort(np.random.default_rng(0).choice(rows, most, replace=False))
+    if count <= most:
+        return np.arange(count)
+    return np.sort(np.random.default_rng(0).choice(count, most, replace=False))
 
 
 def title_with_summary(title: str, *said: str) -> str:
@@ -221,12 +275,17 @@ def histogram_bins(values: Number, scale: float, most: int = MOST_BINS) -> Numbe
     (61, 2)
     """
     known = values[np.isfinite(values)]
-    still = canvas.constant_limits(known, scale)
     if not len(known):
         return np.array([0.0, 1.0])
+    ends = np.array([known.min(), known.max()])
+    return bin_edges(ends, np.percentile(known, [25.0, 75.0]), len(known), scale, most)
+
+
+def bin_edges(ends: Number, quarters: Sequence[float], count: int, scale: float, most: int = MOST_BINS) -> Number:
+    """Return the edges of bins of so many values, by their ends and the percentiles 25 and 75."""
+    still = canvas.constant_limits(ends, scale)
     if still is not None:
         return np.linspace(*still, 4)
-    quarters = np.subtract(*np.percentile(known, [75.0, 25.0]))
-    width = 2.0 * quarters / len(known) ** (1.0 / 3.0)
-    wished = np.ptp(known) / width if width > 0.0 else most
-    return np.linspace(known.min(), known.max(), int(np.clip(np.ceil(wished), 1, most)) + 1)
+    width = 2.0 * (quarters[1] - quarters[0]) / count ** (1.0 / 3.0)
+    wished = np.ptp(ends) / width if width > 0.0 else most
+    return np.linspace(ends[0], ends[1], int(np.clip(np.ceil(wished), 1, most)) + 1)

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import singledispatch
 from types import MappingProxyType
@@ -17,10 +17,11 @@ from compoundkin.base.arguments import checked, real_numbers
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics import Motion
+from compoundkin.kinematics.quantities import ASSEMBLED
 from compoundkin.model.attributes import typeset_unit
 from compoundkin.studies.optimisation.optimum import Optimum
 from compoundkin.studies.study_program import StudyColumn
-from compoundkin.studies.study_result import StudyResult
+from compoundkin.studies.study_result import StudyResult, percentiles_of
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.plot import canvas, plot_style
@@ -30,10 +31,10 @@ from compoundkin.view.plot.plot_style import COLOURS, INK, Plot
 from compoundkin.view.plot.plotted_rows import Plotted, horizontal_axis
 from compoundkin.view.plot.scatter_plots import scatter_matrix
 from compoundkin.view.plot.study_columns import (
+    FigureValues,
     StudyColumns,
     checked_pose,
     displayed_values,
-    histogram_bins,
     place_words,
     title_with_summary,
     toleranced_curves,
@@ -171,26 +172,46 @@ def checked_percentiles(percentiles: Sequence[float]) -> list[float]:
     return result
 
 
-def percentile_curves(values: Number, chosen: Number, percentiles: Sequence[float]) -> Number:
-    """Return percentiles of the chosen designs at every pose, (percentiles, poses).
+# Courses are read by so many poses at once that they take no more bytes than these.
+BYTES_AT_ONCE = 2**26
 
-    They are NaN where no design is known.
 
-    >>> values = np.array([[0.0, np.nan], [1.0, np.nan], [4.0, np.nan], [9.0, 9.0]])
-    >>> percentile_curves(values, np.array([True, True, True, False]), [50.0]).tolist()
+def percentile_curves(
+    pieces: Callable[[], Iterable[Number]], count: int, poses: int, percentiles: Sequence[float]
+) -> Number:
+    """Return percentiles of courses at every pose, (percentiles, poses).
+
+    They are NaN where no design is known. The courses (designs, poses) come in pieces, each time they are asked for, of
+    which there are so many designs.
+
+    >>> values = np.array([[0.0, np.nan], [1.0, np.nan], [4.0, np.nan]])
+    >>> percentile_curves(lambda: [values[:1], values[1:]], 3, 2, [50.0]).tolist()
     [[1.0, nan]]
     """
-    result = np.full((len(percentiles), values.shape[-1]), np.nan)
-    # pose by pose: all at once would need the memory of all designs again
-    for pose in range(values.shape[-1]):
-        known = values[:, pose][chosen & np.isfinite(values[:, pose])]
-        if len(known):
-            result[:, pose] = np.percentile(known, percentiles, overwrite_input=True)
+    result = np.full((len(percentiles), poses), np.nan)
+    many = BYTES_AT_ONCE // (8 * max(count, 1))
+    for first in range(0, poses, max(many, 1)):
+        some = slice(first, first + max(many, 1))
+        # what is too much for one pose alone is read again and again
+        kept = [np.array(piece[:, some]) for piece in pieces()] if many else None
+        for pose in range(*some.indices(poses)):
+
+            def known(pose: int = pose, first: int = first, kept: list[Number] | None = kept) -> Iterator[Number]:
+                own = pieces() if kept is None else kept
+                columns = (piece[:, pose if kept is None else pose - first] for piece in own)
+                return (column[np.isfinite(column)] for column in columns)
+
+            if found := percentiles_of(known, percentiles):
+                result[:, pose] = found
     return result
 
 
 def _study_bands(among: StudyColumns, column: StudyColumn, percentiles: Sequence[float]) -> Bands:
-    courses = percentile_curves(np.asarray(among.result[column.name]), among.assembled, percentiles)
+    there, name = among.result.rows, column.name
+    courses = percentile_curves(
+        lambda: (piece[name][piece[ASSEMBLED]] for piece in there.pieces(name, ASSEMBLED)),
+        among.count, column.width or 0, percentiles,
+    )  # fmt: skip
     quantity = displayed_values(column.name, column.unit, courses)
     rows = dict(zip(percentiles, quantity.values, strict=True))
     lower = [one for one in percentiles if one < 50.0 and 100.0 - one in rows]
@@ -257,7 +278,7 @@ class FigureDistribution:
 
     title: str
     summary: str
-    values: Plotted
+    values: FigureValues
     percentiles: Sequence[float]
     lines: tuple[tuple[str, float], ...] = ()
     normal: tuple[float, float] | None = None
@@ -298,7 +319,7 @@ def histogram(
         text = title_with_summary(shown.title if title is None else title, shown.summary)
         figure, (axes,) = canvas.panels(1, text, size or SIZE)
         _draw_histogram(axes, shown, labels)
-        axes.set_xlabel(shown.values.label)
+        axes.set_xlabel(shown.values.quantity.label)
         canvas.legend_below(figure, axes.get_legend_handles_labels()[0])
         return canvas.finished(figure, labels)
 
@@ -309,7 +330,7 @@ def _study_distribution(
     if pose is not None:
         raise InvalidInput(Problem("pose", "a study has one number of each design here", "leave it out"))
     among = StudyColumns(result)
-    shown = among.values(among.figure(name), np.flatnonzero(among.assembled))
+    shown = among.distribution(among.figure(name))
     return FigureDistribution(
         among.title, among.summary(), shown, HISTOGRAM_PERCENTILES if percentiles is None else percentiles
     )
@@ -321,7 +342,8 @@ def _tolerance_distribution(
     one = toleranced_output(result, name)
     at = checked_pose(one, pose)
     sample = one.sample.values
-    values = displayed_values(one.name, one.unit, sample if at is None else sample[:, at])
+    own = displayed_values(one.name, one.unit, sample if at is None else sample[:, at]).values
+    values = FigureValues.of(one.name, one.unit, lambda: [own[np.isfinite(own)]])
 
     def shown(own: Number) -> float:
         return float(displayed_values(one.name, one.unit, np.array([value_at(own, at)])).values[0])
@@ -335,22 +357,21 @@ def _tolerance_distribution(
 def _draw_histogram(axes: Any, shown: FigureDistribution, labels: list[PointLabel]) -> None:
     from matplotlib.ticker import MaxNLocator
 
-    values = shown.values.values[np.isfinite(shown.values.values)]
-    if not len(values):
+    if not shown.values.count:
         canvas.write_empty(axes)
         axes.set_xticks([])
         return
-    edges = histogram_bins(values, shown.values.scale)
-    counts, _, _ = axes.hist(values, bins=edges, color=COLOURS[0], alpha=0.75)
+    edges, counts = shown.values.bins, shown.values.counts()
+    axes.hist(edges[:-1], bins=edges, weights=counts, color=COLOURS[0], alpha=0.75)
     axes.set_ylim(0.0, (1.0 + HISTOGRAM_MARGIN) * float(np.max(counts)))
     if shown.normal is not None and shown.normal[1] > 0.0:
-        _normal(axes, shown.normal, len(values) * (edges[1] - edges[0]))
+        _normal(axes, shown.normal, shown.values.count * (edges[1] - edges[0]))
     for name, place in shown.lines:
         axes.axvline(place, color=COLOURS[1], linewidth=1.2, label=name)
-    _percentiles(axes, shown, values, labels)
+    _percentiles(axes, shown, labels)
     axes.set_ylabel("designs")
     axes.yaxis.set_major_locator(MaxNLocator(canvas.UPWARDS, integer=True))
-    canvas.set_round_ticks(axes.xaxis, shown.values.is_angle, canvas.ACROSS)
+    canvas.set_round_ticks(axes.xaxis, shown.values.quantity.is_angle, canvas.ACROSS)
 
 
 def _normal(axes: Any, normal: tuple[float, float], area: float) -> None:
@@ -362,13 +383,11 @@ def _normal(axes: Any, normal: tuple[float, float], area: float) -> None:
     axes.set_ylim(0.0, max(axes.get_ylim()[1], (1.0 + HISTOGRAM_MARGIN) * float(density.max())))
 
 
-def _percentiles(axes: Any, shown: FigureDistribution, values: Number, labels: list[PointLabel]) -> None:
-    top, scale = axes.get_ylim()[1], shown.values.scale
-    for one, value in zip(shown.percentiles, np.percentile(values, shown.percentiles), strict=True):
+def _percentiles(axes: Any, shown: FigureDistribution, labels: list[PointLabel]) -> None:
+    top, scale = axes.get_ylim()[1], shown.values.quantity.scale
+    for one, value in zip(shown.percentiles, shown.values.percentiles(shown.percentiles), strict=True):
         axes.axvline(value, color=INK, linestyle="--", linewidth=1.0)
-        labels.append(
-            PointLabel(axes, float(value), 0.97 * top, f"{_percentile(one)}: {value_text(float(value), scale)}", 1.0)
-        )
+        labels.append(PointLabel(axes, value, 0.97 * top, f"{_percentile(one)}: {value_text(value, scale)}", 1.0))
 
 
 BARS_BASE_HEIGHT, BAR_HEIGHT = 1.7, 0.27

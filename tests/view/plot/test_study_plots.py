@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from functools import cache
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,9 @@ from tests import catalog
 
 pytest.importorskip("matplotlib")
 
+from compoundkin.studies import study_rows
 from compoundkin.studies.study_result import pareto_rows
+from compoundkin.view.plot import study_plot
 from compoundkin.view.plot.scatter_plots import rank_correlation
 from compoundkin.view.plot.study_columns import drawn_rows
 
@@ -170,10 +173,36 @@ def test_odd_studies_are_drawn_too() -> None:
     assert rank_correlation(np.ones(9), np.arange(9.0)) is None
 
 
+@pytest.mark.parametrize("most", [0, 8 * 128 * 5])
+def test_what_is_read_piece_by_piece_is_drawn_as_the_whole(
+    result: ck.results.StudyResult, monkeypatch: pytest.MonkeyPatch, most: int
+) -> None:
+    """Pieces of 16 rows; courses by five poses at a time, or one pose that is too much for itself."""
+
+    def drawn() -> list[Any]:
+        plots = (
+            ck.plots.histogram(result, STROKE),
+            ck.plots.pareto(result, STROKE, TRANSMISSION, greatest=[STROKE], colour=CRANK),
+            ck.plots.bands(result, ANGLE),
+            result.plot(CRANK, STROKE),
+        )
+        axes = [one for plot in plots for one in plot.figure.axes]
+        bars = [[part.get_height() for part in one.patches] for one in axes]
+        lines = [[np.asarray(part.get_ydata(), dtype=float) for part in one.lines] for one in axes]
+        dots = [[np.asarray(part.get_offsets()) for part in one.collections] for one in axes]
+        return [*bars, *chain(*lines, *dots), *(heading(plot) for plot in plots)]
+
+    whole = drawn()
+    monkeypatch.setattr(study_rows, "MOST_ROWS", 16)
+    monkeypatch.setattr(study_plot, "BYTES_AT_ONCE", most)
+    for one, other in zip(drawn(), whole, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
 def test_of_very_many_designs_some_thousands_are_drawn() -> None:
-    rows = drawn_rows(np.arange(2**20))
+    rows = drawn_rows(2**20)
     assert len(rows) == len(np.unique(rows)) == 3000
-    np.testing.assert_array_equal(rows, drawn_rows(np.arange(2**20)))
+    np.testing.assert_array_equal(rows, drawn_rows(2**20))
 
 
 @pytest.mark.parametrize(
