@@ -13,7 +13,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
@@ -165,6 +165,18 @@ class CouplerAtlas(ShortRepr):
         if bound:
             found = list(islice((match for match in found if _holds(match, size, wanted)), count))
         return found[:count]
+
+    def designs_for(
+        self, mechanism: Mechanism, ranges: Mapping[str, tuple[complex, complex]], seed: int = 0
+    ) -> dict[str, Number]:
+        """Return values of dimensions by name, (designs,), with which a mechanism is a design of the atlas.
+
+        Raises InvalidInput where the mechanism is no chain of it.
+        """
+        from compoundkin.dimensional.atlas_starts import designs_for
+
+        held = [(part.chain, lambda part=part: part.read()[0]) for part in self.parts if part.size]
+        return designs_for(held, mechanism, ranges, seed)
 
 
 def _holds(match: AtlasMatch, size: float | None, wanted: Conditions) -> bool:

@@ -177,10 +177,10 @@ def function_chains(links: int = 6) -> tuple[FunctionChain, ...]:
 _TITLES = {
     (FOUR_BAR, COUPLER, LEVER): "Stephenson III",
     (FOUR_BAR, ROCKER, LEVER): "Watt II",
-    (FOUR_BAR, COUPLER, RAM): "Four-bar with a slide led by its coupler",
-    (FOUR_BAR, ROCKER, RAM): "Four-bar with a slide led by its rocker",
-    (SLIDER_CRANK, COUPLER, LEVER): "Slider-crank with a lever led by its rod",
-    (SLIDER_CRANK, COUPLER, RAM): "Slider-crank with a second slide",
+    (FOUR_BAR, COUPLER, RAM): "Four-bar, coupler and ram",
+    (FOUR_BAR, ROCKER, RAM): "Four-bar, rocker and ram",
+    (SLIDER_CRANK, COUPLER, LEVER): "Slider-crank and lever",
+    (SLIDER_CRANK, COUPLER, RAM): "Slider-crank and ram",
 }
 
 

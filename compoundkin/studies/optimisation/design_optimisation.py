@@ -56,7 +56,7 @@ def optimise(
     jerk: Any = None,
     time: Any = None,
     modes: Mapping[str, int] | str | Configuration | None = None,
-    starts: int = 64,
+    starts: Any = 64,
     seed: int = 0,
     method: str | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -69,7 +69,9 @@ def optimise(
 
     Many designs are sampled, searches begin at the best `starts` of them, and the best ends are refined by a method
     of SciPy: "least_squares", "SLSQP", "trust-constr" or "differential_evolution", by default the one that fits. The
-    result is reproducible for a `seed`. `progress(done, total)` is called after every step.
+    result is reproducible for a `seed`. `progress(done, total)` is called after every step. Instead of a number
+    `starts` may be an atlas (`coupler_atlas`): the best of its designs of the mechanism's chain begin, at its scale and
+    within the ranges.
 
     Raises UnknownName for unknown dimensions and figures, InvalidInput for arguments that do not fit the mechanism,
     NotAssembled where no design within the ranges is assembled; warns UnmetConstraints where they hold nowhere,
@@ -84,11 +86,13 @@ def optimise(
     """
     began = perf_counter()
     moved = {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk, "time": time, "modes": modes}
+    count = starts if isinstance(starts, int) else FROM_ATLAS
     _check_search_numbers(starts, seed)
     goals, constraints = checked_goals(objective), checked_constraints(subject_to)
     with suppress_pose_warnings(), np.errstate(all="ignore"):
         problem = stated_problem(mechanism, free, goals, constraints, **moved)
-        search = DesignSearch(problem, starts, seed, method, progress)
+        given = None if isinstance(starts, int) else _given(starts, mechanism, problem, seed)
+        search = DesignSearch(problem, count, seed, method, progress, given=given)
         found = optimum_of_search(search, search.ends(), moved, began)
     _warn(found)
     return found
@@ -110,14 +114,38 @@ def _warn(found: Optimum) -> None:
         warn(f"the design that was found does not pass its verification ({failed}); {remedy}", UnassembledPoses)
 
 
-def _check_search_numbers(starts: int, seed: int) -> None:
+def _given(starts: Any, mechanism: Mechanism, problem: DesignProblem, seed: int) -> Number:
+    """Return the designs of an atlas within the ranges, by their parts. Raises InvalidInput where there are none."""
+    space = problem.space
+    ends = np.stack([space.low, space.high])
+    ranges = {name: tuple(complex(*(end[k] for k in at)) for end in ends) for name, at in space.dimensions.items()}
+    values = starts.designs_for(mechanism, ranges, seed)
+    both = ((values[name].real, values[name].imag)[: len(at)] for name, at in space.dimensions.items())
+    numbers = [part for one in both for part in one]
+    parts = np.full((len(numbers[0]), space.size), 0.5)
+    parts[:, : space.own] = (np.array(numbers).T - space.low[: space.own]) / space.span[: space.own]
+    outside = (parts < 0.0) | (parts > 1.0)
+    inside = ~outside.any(axis=1)
+    if not inside.any():
+        name = space.names[int(outside.sum(axis=0).argmax())]
+        what = f"no design of the atlas lies within the ranges, most are beyond that of {name}"
+        raise InvalidInput(Problem("starts", what, "widen it, or give a number of starts"))
+    return parts[inside]
+
+
+def _check_search_numbers(starts: Any, seed: int) -> None:
     """Raise InvalidInput for an invalid number of starts or seed."""
-    if not 1 <= starts <= MOST_STARTS:
+    if isinstance(starts, bool) or not (isinstance(starts, int) or hasattr(starts, "designs_for")):
+        what = f"{short_repr(starts)} is neither a number of starts nor an atlas"
+        raise InvalidInput(Problem("starts", what, "give a whole number, or ck.coupler_atlas()"))
+    if isinstance(starts, int) and not 1 <= starts <= MOST_STARTS:
         raise InvalidInput(Problem("starts", f"{starts} is no number of starts", f"1 to {MOST_STARTS}"))
     if seed < 0:
         raise InvalidInput(Problem("seed", f"{seed} is no seed", "0 or more"))
 
 
+# How many searches begin at designs of an atlas.
+FROM_ATLAS = 64
 # With more starts not all of them would be assembled designs of the sample.
 MOST_STARTS = 1 << 12
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -166,6 +166,7 @@ class DesignSearch(ShortRepr):
     starts: int
     seed: int
     method: str | None
+    given: Number = field(default=None, kw_only=True)
     progress: Callable[[int, int], None] | None
 
     @cached_property
@@ -176,7 +177,7 @@ class DesignSearch(ShortRepr):
     @cached_property
     def begun(self) -> StartingDesigns:
         """The starts of its searches."""
-        return starting_designs(self.problem, self.starts, self.seed, self.problem.own_parts)
+        return starting_designs(self.problem, self.starts, self.seed, self.problem.own_parts, self.given)
 
     @property
     def leads_on(self) -> bool:
@@ -262,18 +263,25 @@ class StartingDesigns(ShortRepr):
     matters: Number
 
 
-def starting_designs(problem: DesignProblem, starts: int, seed: int, own: Number) -> StartingDesigns:
-    """Return the starts, the given design among the candidates. Raises NotAssembled where none is assembled.
+def starting_designs(
+    problem: DesignProblem, starts: int, seed: int, own: Number, given: Number = None
+) -> StartingDesigns:
+    """Return the starts, the own design among the candidates. Raises NotAssembled where none is assembled.
 
+    Candidates are sampled, or those that are `given`, (designs, numbers), and sampled ones where they are too few.
     Designs better than their neighbours come first. Source: A. Törn, S. Viitanen, Topographical global
     optimization, in: Recent Advances in Global Optimization, Princeton 1992.
     """
     total = min(max(LEAST_SAMPLED, 1 << (SAMPLED_FOR_EACH * starts - 1).bit_length()), MOST_SAMPLED)
+    total = total if given is None else len(given)
     sample, failures = SobolSample(MOST_SAMPLED, seed), Counter[str]()
     found: list[tuple[Number, Number, Number]] = []
     row = kept = looked = 0
     while row < total or (kept < starts and row < MOST_SAMPLED):
-        units = sample.units(problem.space.size, range(row, row + AT_ONCE))
+        if given is not None and row < total:
+            units = given[row : row + AT_ONCE]
+        else:
+            units = sample.units(problem.space.size, range(row, row + AT_ONCE))
         designs = problem.at(problem.guessed(units if row else np.concatenate([own, units])))
         row += AT_ONCE
         looked += len(designs.parts)
