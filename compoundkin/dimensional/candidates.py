@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from compoundkin.model.elements import Item, Link, drawn, drive, link
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import slide
+
+if TYPE_CHECKING:
+    from compoundkin.dimensional.defects import Rejection, SolvedLinkage
 
 # The coupler's name where a task names no body, and its point.
 COUPLER, POINT = "coupler", "P"
@@ -92,7 +95,8 @@ class Candidates:
     """What a method gives: `linkages`, `complete`, what of how many there are, and a `note` on what is special.
 
     `found` may be the dyads that they are made of. `nearest` says where there are none how far a task would have to
-    give, and which tolerance would do. `is_family` marks some linkages of infinitely many.
+    give, and which tolerance would do. `is_family` marks some linkages of infinitely many. Where a method has judged
+    its linkages already, `verdicts` are what it found, one for each.
     """
 
     linkages: Iterable[Linkage]
@@ -101,6 +105,7 @@ class Candidates:
     found: object = None
     nearest: str = ""
     is_family: bool = False
+    verdicts: tuple[SolvedLinkage | Rejection, ...] | None = None
 
     def __iter__(self) -> Iterator[Linkage]:
         return iter(self.linkages)

@@ -30,14 +30,13 @@ from compoundkin.base.suffixes import suffix_for
 from compoundkin.dimensional import tasks
 from compoundkin.dimensional.candidates import Linkage
 from compoundkin.dimensional.curve_chains import CRANK, ChainPlan, CurveChain, Laying, curve_chains, turn
-from compoundkin.dimensional.defects import least_transmission
-from compoundkin.dimensional.tasks import Conditions
+from compoundkin.dimensional.curve_conditions import CurveConditions, LaidDesigns
+from compoundkin.dimensional.tasks import Conditions, CurveTiming
 from compoundkin.files.atomic import new_folder
 from compoundkin.files.parsed_document import unreadable
-from compoundkin.kinematics import solve
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.samples.random_samples import SobolSample
-from compoundkin.studies.study_folder import part_columns, part_content
+from compoundkin.studies.study_folder import part_columns, part_content, part_rows
 from compoundkin.studies.study_program import StudyColumn
 
 # Poses of a turn of which a curve is made, those at which a design that is kept must be clear of limits (between 64 one
@@ -47,8 +46,10 @@ POSES, CLEAR_AT, BLOCK = 64, 512, 4096
 LEAST_RADIUS = 0.05
 # Draws of a chain for each design that is kept, at most.
 DRAWS = 400
-# Designs that are compared exactly at once.
-COMPARED = 1024
+# Designs that are compared exactly at once, and of those that are known first.
+COMPARED, FEW = 1024, 64
+# By how much a likeness in single precision may be above its bound.
+ROUNDED = 1e-5
 # Two curves are of one kind where they are apart by less than this part of the way to the wanted one.
 TWINS = 0.35
 
@@ -68,15 +69,16 @@ _ORDERS = np.concatenate([np.arange(1, HARMONICS + 1), np.arange(-HARMONICS, 0)]
 class AtlasMatch(NamedTuple):
     """A design of the atlas near a curve, laid on it, and how far apart the curves are.
 
-    `apart` is the root of the mean square over places at equal parts of the arcs, in the curve's RMS radius. `part` is
-    of an open curve where along the arc of the design's curve it begins, and how long it is, in parts of that arc.
+    `apart` is the root of the mean square over places at equal parts of the arcs, or of the driver's turn for a curve
+    with timing, in the curve's RMS radius. `window` is of an open curve, or one with timing, the crank's angle at which
+    it begins and the turn from there.
     """
 
     chain: CurveChain
     design: Number
     laying: Laying
     apart: float
-    part: tuple[float, float] | None = None
+    window: tuple[float, float] | None = None
 
     @property
     def links(self) -> int:
@@ -101,16 +103,23 @@ class AtlasPart(NamedTuple):
     size: int
     held: tuple[Number, Number] | None
     path: Path | None = None
-    fingerprint: str = ""
 
-    def read(self) -> tuple[Number, Number]:
-        """Return designs (designs, numbers) and descriptors (designs, coefficients)."""
+    @property
+    def descriptors(self) -> Number:
+        """The descriptors of all designs (designs, coefficients)."""
         if self.held is not None:
-            return self.held
+            return self.held[1]
         assert self.path is not None
-        found = part_columns(self.path, _columns(self.chain))
-        descriptors = np.ascontiguousarray(found.pop(_DESCRIPTOR)).view(np.complex64)
-        return np.stack(list(found.values()), axis=-1), descriptors
+        return part_columns(self.path, [_DESCRIPTOR])[_DESCRIPTOR.name].view(np.complex64).reshape(-1, 2 * HARMONICS)
+
+    def designs(self, at: Number = None) -> Number:
+        """Return the designs at some places, else all (designs, numbers)."""
+        if self.held is not None:
+            return self.held[0] if at is None else self.held[0][at]
+        assert self.path is not None
+        columns = _numbers(self.chain)
+        found = part_columns(self.path, columns) if at is None else part_rows(self.path, columns, at)
+        return np.stack(list(found.values()), axis=-1)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -138,6 +147,7 @@ class CouplerAtlas(ShortRepr):
         size: float | None = None,
         region: Any = None,
         transmission: float = 0.0,
+        obstacles: Any = None,
     ) -> list[AtlasMatch]:
         """Return designs near a curve, complex (places,) or (places, 2), of different shapes, the nearest first.
 
@@ -146,8 +156,9 @@ class CouplerAtlas(ShortRepr):
         ends do not meet is `closed` False: it is held against parts of the designs' curves.
 
         Those of at most so many `links`, without `sliders`, whose lengths sum to `size` at most, with all fixed pivots
-        in a `region` (two corners or a polygon), and with a least `transmission` angle (radians), as they lie on the
-        curve. Raises InvalidInput for what is no curve or condition.
+        in a `region` (two corners or a polygon), with a least `transmission` angle (radians), and clear of `obstacles`
+        (polygons), as they lie on the curve: conditions are looked at as designs are found, none is missed. Raises
+        InvalidInput for what is no curve or condition.
 
         >>> import numpy as np
         >>> found = coupler_atlas(4, 1000).near(np.exp(1j * np.linspace(0, 6, 40)), 3, closed=True)
@@ -155,16 +166,24 @@ class CouplerAtlas(ShortRepr):
         [4, 4, 4]
         """
         task = tasks.curve(curve, closed=closed)
-        wanted = Conditions.of(region, None, None, transmission, False, tasks.ACCURACY)
+        wanted = Conditions.of(region, None, None, transmission, False, tasks.ACCURACY, obstacles)
+        sought = SoughtCurve(task.points, task.closed, None, CurveConditions(wanted, size))
+        return self.nearest(sought, count, links=links, sliders=sliders)
+
+    def nearest(
+        self, sought: SoughtCurve, count: int, *, links: int | None = None, sliders: bool = True
+    ) -> list[AtlasMatch]:
+        """Return what `near` does, for a curve with its timing and conditions."""
         kept = [part for part in self.parts if sliders or not part.chain.has_slider]
         kept = [part for part in kept if part.size and (links is None or part.chain.links <= links)]
-        bound = size is not None or region is not None or transmission > 0.0
-        each = max(2, -(-(8 if bound else 2) * count // max(len(kept), 1)))
-        found = [match for part in kept for match in _nearest(part, task.points, task.closed, each)]
-        found.sort(key=lambda match: match.apart)
-        if bound:
-            found = list(islice((match for match in found if _holds(match, size, wanted)), count))
-        return found[:count]
+        each = max(2, -(-2 * count // max(len(kept), 1)))
+        found = [(float(one.apart[0]), k, one) for k, part in enumerate(kept)
+                 for one in islice(_different(part, sought), each)]  # fmt: skip
+        found = sorted(found, key=lambda one: one[0])[:count]
+        matches = list[AtlasMatch]()
+        for k in sorted({k for _, k, _ in found}):
+            matches += _matches(kept[k], _Ranked.joined([one for _, of, one in found if of == k]), sought)
+        return sorted(matches, key=lambda one: one.apart)
 
     def designs_for(
         self, mechanism: Mechanism, ranges: Mapping[str, tuple[complex, complex]], seed: int = 0
@@ -179,114 +198,270 @@ class CouplerAtlas(ShortRepr):
         return designs_for(held, mechanism, ranges, seed)
 
 
-def _holds(match: AtlasMatch, size: float | None, wanted: Conditions) -> bool:
-    """Return whether a match fulfils conditions where it lies."""
-    linkage = match.linkage
-    if (size is not None and linkage.span > size) or not all(map(wanted.holds, linkage.pivots)):
-        return False
-    if not wanted.transmission:
-        return True
-    return least_transmission(solve(match.mechanism, order=0), between=False) >= wanted.transmission
+class SoughtCurve(NamedTuple):
+    """A curve that designs are to be near, complex (places,), what it must be like, and what must hold of them."""
+
+    points: Number
+    closed: bool
+    timing: CurveTiming | None = None
+    conditions: CurveConditions = CurveConditions(Conditions())
+
+    def seen(self, samples: int) -> Number:
+        """Return so many places evenly along it, of one with timing evenly over the driver's turn."""
+        if self.timing is None:
+            return resampled(self.points[None], samples, self.closed)[0]
+        parts, points = self.timing.parts, self.points
+        if self.closed:
+            parts, points = np.append(parts, 1.0), np.append(points, points[0])
+        return np.interp(np.linspace(0.0, 1.0, samples, endpoint=not self.closed), parts, points)
 
 
-def _nearest(part: AtlasPart, curve: Number, closed: bool, count: int) -> Iterator[AtlasMatch]:
-    """Yield the nearest designs of one chain, none a twin of another."""
-    designs, descriptors = part.read()
-    look = _likely if closed else _likely_parts
-    shown: list[Number] = []
-    target = resampled(curve[None], SAMPLES, closed)[0]
-    for likeness_of_it, k, mirrored, window in look(descriptors, curve, count):
-        apart = float(np.sqrt(max(0.0, 2.0 - 2.0 * likeness_of_it)))
-        own = descriptors[k]
-        if shown and likeness(np.array(shown), own)[0].max() > 1.0 - (TWINS * apart) ** 2 / 2.0:
-            continue
-        shown.append(own)
-        z = part.chain.curves(np.asarray(designs[[k]], float), 2 * POSES)[0][0]
-        scale, place, _ = best_laid(z, np.conj(target) if mirrored else target, window)
-        yield AtlasMatch(part.chain, designs[k], Laying(scale, place, mirrored), apart, window)
-        if len(shown) == count:
-            return
+class _Ranked(NamedTuple):
+    """Designs of a part in the order of their likeness: its value, their places, whether mirrored, and which part.
 
-
-_Likely = Iterator[tuple[float, int, bool, tuple[float, float] | None]]
-
-
-def _likely(descriptors: Number, curve: Number, count: int) -> _Likely:
-    """Yield the likeness of the nearest designs to a closed curve, their places, and whether mirrored."""
-    wanted = coefficients(curve[None])[0][0]
-    sizes, magnitudes = np.abs(wanted).astype(np.float32), np.abs(descriptors)
-    bound = np.maximum(magnitudes @ sizes, magnitudes @ sizes[::-1])
-    order = np.argsort(-bound)
-    wide, kept = 16 * count, np.zeros(0, int)
-    best, mirrored = np.zeros(0), np.zeros(0, bool)
-    for first in range(0, len(order), COMPARED):
-        part = order[first : first + COMPARED]
-        if len(best) >= wide and bound[part[0]] <= np.partition(best, -wide)[-wide]:
-            break
-        value, is_mirrored = likeness(descriptors[part], wanted)
-        best, mirrored, kept = np.append(best, value), np.append(mirrored, is_mirrored), np.append(kept, part)
-    for j in np.argsort(-best)[:wide]:
-        yield float(best[j]), int(kept[j]), bool(mirrored[j]), None
-
-
-def _likely_parts(descriptors: Number, curve: Number, count: int) -> _Likely:
-    """Yield the likeness of parts of curves to an open one, their places, whether mirrored, and which part.
-
-    A part's correlation with the curve over all places where it may begin is one transform; what it is divided by, the
-    part's own sum of squares, is a difference of running sums.
+    `window` is where a part begins and how long it is, in parts of the arc (or with timing of the turn), (n, 2).
     """
-    from scipy.fft import fft, ifft
+
+    likeness: Number
+    at: Number
+    mirrored: Number
+    window: Number | None = None
+
+    @property
+    def apart(self) -> Number:
+        """How far apart the curves are."""
+        return np.sqrt(np.maximum(0.0, 2.0 - 2.0 * self.likeness.astype(float)))
+
+    def some(self, kept: Any) -> _Ranked:
+        """Return some of them."""
+        return _Ranked(*(None if each is None else each[kept] for each in self))
+
+    def split(self, many: int) -> Iterator[_Ranked]:
+        """Yield so many at a time."""
+        for first in range(0, len(self.at), many):
+            yield self.some(slice(first, first + many))
+
+    @staticmethod
+    def joined(parts: Sequence[_Ranked]) -> _Ranked:
+        """Return several as one."""
+        return _Ranked(*(None if each[0] is None else np.concatenate(each) for each in zip(*parts, strict=True)))
+
+
+def _different(part: AtlasPart, sought: SoughtCurve) -> Iterator[_Ranked]:
+    """Yield the nearest designs of one chain that hold the conditions, one by one, none a twin of one before."""
+    descriptors = part.descriptors
+    shown: list[Number] = []
+    if sought.timing is not None:
+        ranked = _with_timing(part, sought)
+    else:
+        ranked = (_likely if sought.closed else _likely_parts)(descriptors, sought.points)
+    many = FEW
+    for block in ranked:
+        for some in block.split(many):
+            if sought.conditions:
+                designs, scale, place, _ = _laid(part, some, sought)
+                held = sought.conditions.held(LaidDesigns(part.chain, designs, scale, place, some.mirrored))
+                some, many = some.some(held), min(2 * many, COMPARED)
+            own, apart = descriptors[some.at], some.apart
+            nearest = np.max([np.zeros(len(own)), *(likeness(own, one)[0] for one in shown)], axis=0)
+            for k in range(len(own)):
+                if nearest[k] <= 1.0 - (TWINS * apart[k]) ** 2 / 2.0:
+                    shown.append(own[k])
+                    nearest = np.maximum(nearest, likeness(own, own[k])[0])
+                    yield some.some(slice(k, k + 1))
+
+
+def _matches(part: AtlasPart, some: _Ranked, sought: SoughtCurve) -> list[AtlasMatch]:
+    """Return designs of a part laid on a curve."""
+    designs, scale, place, window = _laid(part, some, sought)
+    layings = map(Laying, scale.tolist(), place.tolist(), some.mirrored.tolist())
+    windows = [None] * len(designs) if window is None else list(map(tuple, window.tolist()))
+    return list(map(AtlasMatch, [part.chain] * len(designs), designs, layings, some.apart.tolist(), windows))
+
+
+def _laid(part: AtlasPart, some: _Ranked, sought: SoughtCurve) -> tuple[Number, Number, Number, Number | None]:
+    """Return ranked designs, the scales and places that lay them on a curve, and the crank's angles there."""
+    designs, target = part.designs(some.at).astype(float), sought.seen(SAMPLES)
+    targets = np.where(some.mirrored[:, None], np.conj(target), target)
+    if sought.timing is None:
+        return designs, *best_laid(part.chain.curves(designs, 2 * POSES)[0], targets, some.window)
+    assert some.window is not None
+    window, parts = TURN * some.window, np.linspace(0.0, 1.0, SAMPLES, endpoint=not sought.closed)
+    z, _ = part.chain.places(designs, window[:, :1] + window[:, 1:] * parts)
+    return designs, *on_target(z, targets), window
+
+
+def _in_blocks(value: Number, mirrored: Number, window: Number) -> Iterator[_Ranked]:
+    """Yield designs in the order of their likeness, more and more at once."""
+    order, first, many = np.argsort(-value, kind="stable"), 0, FEW
+    while first < len(order):
+        at = order[first : first + many]
+        yield _Ranked(value[at], at, mirrored[at], window[at])
+        first, many = first + many, min(2 * many, COMPARED)
+
+
+def _likely(descriptors: Number, curve: Number) -> Iterator[_Ranked]:
+    """Yield designs by their likeness to a closed curve.
+
+    Likeness is computed in the order of a bound by magnitudes alone; what is nearer than the next bound comes next.
+    """
+    wanted = coefficients(curve[None])[0][0]
+    sizes = np.abs(wanted).astype(np.float32)
+    magnitudes = np.abs(descriptors)
+    bound = np.maximum(magnitudes @ sizes, magnitudes @ sizes[::-1])
+    waiting = _Ranked(np.zeros(0), np.zeros(0, int), np.zeros(0, bool))
+    for order, least in _falling(bound):
+        value, mirrored = likeness(descriptors[order], wanted)
+        merged = [np.append(one, new) for one, new in zip(waiting, (value, order, mirrored), strict=False)]
+        waiting = _Ranked(*merged).some(np.argsort(-merged[0], kind="stable"))
+        ready = int(np.searchsorted(-waiting.likeness, -(least + ROUNDED)))
+        if ready:
+            yield waiting.some(slice(ready))
+            waiting = waiting.some(slice(ready, None))
+
+
+def _falling(bound: Number) -> Iterator[tuple[Number, float]]:
+    """Yield places of numbers, the greatest first, some at once, and the greatest of those left."""
+    many = 2 * FEW
+    left = np.arange(len(bound))
+    while len(left):
+        if many < len(left):
+            parted = np.argpartition(-bound[left], many)
+            chosen, left = left[parted[:many]], left[parted[many:]]
+        else:
+            chosen, left = left, left[:0]
+        yield np.sort(chosen), float(bound[left].max()) if len(left) else -np.inf
+        many *= 2
+
+
+def _likely_parts(descriptors: Number, curve: Number) -> Iterator[_Ranked]:
+    """Yield designs by the likeness of parts of their curves to an open one."""
+    from scipy.fft import ifft
 
     spectrum = np.zeros((len(descriptors), STARTS), np.complex64)
     spectrum[:, _ORDERS] = descriptors
     z = ifft(spectrum, axis=1) * STARTS
+    sought = {long: resampled(curve[None], long, closed=False)[0] for long in PARTS}
+    # either sense, and mirrored
+    variants = [(long, sense, mirrored) for long in PARTS for sense in (1, -1) for mirrored in (False, True)]
+    value, start, found = _best_parts(z, [_seen(sought[long], sense, is_seen) for long, sense, is_seen in variants])
+    long, _, mirrored = (np.array(each)[found] for each in zip(*variants, strict=True))
+    window = np.stack([start / STARTS, (long - 1) / STARTS], axis=-1)
+    yield from _in_blocks(np.minimum(value, 1.0), mirrored, window)
+
+
+def _with_timing(part: AtlasPart, sought: SoughtCurve) -> Iterator[_Ranked]:
+    """Yield designs by the likeness of parts of their turn to a curve with timing: place for place, at each time."""
+    timing, designs = sought.timing, part.designs()
+    assert timing is not None
+    z = np.concatenate([part.chain.curves(designs[k : k + BLOCK].astype(float), STARTS)[0].astype(np.complex64)
+                        for k in range(0, len(designs), BLOCK)])  # fmt: skip
+    z -= z.mean(axis=1, keepdims=True)
+    if sought.closed:
+        lengths: Sequence[int] = (STARTS,)
+    elif timing.turn:
+        lengths = (max(2, round(abs(timing.turn) / TURN * STARTS) + 1),)
+    else:
+        lengths = PARTS
+    variants = [(long, sense, mirrored) for long in lengths for sense in (1, -1) for mirrored in (False, True)
+                if timing.either or ((sense < 0) != mirrored) == (timing.turn < 0)]  # fmt: skip
+    value, start, found = _best_parts(
+        z, [_seen(sought.seen(long), sense, is_seen) for long, sense, is_seen in variants]
+    )
+    long, sense, mirrored = (np.array(each)[found] for each in zip(*variants, strict=True))
+    turned = long / STARTS if sought.closed else (long - 1) / STARTS
+    if timing.turn:
+        turned = np.full(len(z), abs(timing.turn) / TURN)
+    begin = start / STARTS
+    # backwards it begins where the part ends, of a whole turn a step before
+    begin = np.where(sense < 0, begin + (long - 1) / STARTS, begin)
+    yield from _in_blocks(np.minimum(value, 1.0), mirrored, np.stack([begin, sense * turned], axis=-1))
+
+
+def _seen(curve: Number, sense: int, mirrored: bool) -> Number:
+    return (np.conj(curve) if mirrored else curve)[::sense]
+
+
+def _best_parts(z: Number, variants: Sequence[Number]) -> tuple[Number, Number, Number]:
+    """Return the best likeness of parts of closed curves (n, STARTS) to any of some curves, where it begins, and which.
+
+    A part's correlation with a curve over all places where it may begin is one transform; what it is divided by, the
+    part's own sum of squares, is a difference of running sums.
+    """
+    from scipy.fft import fft, ifft
+
     spectrum = fft(z, axis=1)
     running = [np.pad(np.cumsum(np.tile(one, 2), axis=1), ((0, 0), (1, 0))) for one in (z, z.real**2 + z.imag**2)]
-    best, found = np.zeros(len(z)), np.zeros((len(z), 3), int)
-    for long in PARTS:
-        sums, squares = (one[:, long : long + STARTS] - one[:, :STARTS] for one in running)
-        spread = squares - np.abs(sums) ** 2 / long
-        wanted = resampled(curve[None], long, closed=False)[0]
-        wanted = (wanted - wanted.mean()) / np.linalg.norm(wanted - wanted.mean())
-        for k, own in enumerate((wanted, wanted[::-1], np.conj(wanted), np.conj(wanted[::-1]))):
-            other = fft(np.pad(own, (0, STARTS - long)).astype(np.complex64))
-            value = np.abs(ifft(spectrum * np.conj(other), axis=1)) / np.sqrt(np.maximum(spread, LEAST_SPREAD))
-            start = value.argmax(axis=1)
-            value = value[np.arange(len(z)), start]
-            better = value > best
-            best[better] = value[better]
-            found[better] = np.stack([start, np.full(len(z), long), np.full(len(z), k > 1)], axis=-1)[better]
-    for k in np.argsort(-best)[: 16 * count]:
-        start, long, mirrored = found[k].tolist()
-        yield float(min(best[k], 1.0)), int(k), bool(mirrored), (start / STARTS, (long - 1) / STARTS)
+    whole = np.abs(spectrum[:, 1:]) ** 2
+    least = LEAST_SPREAD * whole.sum(axis=1, keepdims=True) / STARTS**2
+    best, at, which = np.zeros(len(z)), np.zeros(len(z), int), np.zeros(len(z), int)
+    spreads = dict[int, Number]()
+    for k, curve in enumerate(variants):
+        long = len(curve)
+        if long not in spreads:
+            sums, squares = (one[:, long : long + STARTS] - one[:, :STARTS] for one in running)
+            spreads[long] = np.sqrt(np.maximum(squares - np.abs(sums) ** 2 / long, least))
+        own = (curve - curve.mean()) / np.linalg.norm(curve - curve.mean())
+        other = fft(np.pad(own, (0, STARTS - long)).astype(np.complex64))
+        value = np.abs(ifft(spectrum * np.conj(other), axis=1)) / spreads[long]
+        start = value.argmax(axis=1)
+        value = value[np.arange(len(z)), start]
+        better = value > best
+        best[better], at[better], which[better] = value[better], start[better], k
+    return best, at, which
 
 
-def best_laid(
-    z: Number, target: Number, part: tuple[float, float] | None = None
-) -> tuple[complex, complex, tuple[float, ...]]:
-    """Return scale and place that lay a closed curve, or a part of it, on a target, and the crank's angles there.
+def best_laid(z: Number, targets: Number, parts: Number | None = None) -> tuple[Number, Number, Number | None]:
+    """Return scales and places that lay closed curves, or `parts` of them, on targets, and the crank's angles there.
 
-    Both have places evenly along the target's arc, and the curve's poses evenly over a turn. All starts and both senses
-    are tried. The angles are those of the begin, and from there to the end; none of a whole curve.
+    Curves (n, poses) have their poses evenly over a turn, targets (n, places) theirs evenly along the arc. All starts
+    and both senses are tried. `parts` (n, 2) are where they begin and how long they are along the arc, the angles those
+    at the begin and from there to the end, (n, 2).
     """
-    n = len(target)
-    window: tuple[float, ...] = ()
-    if part is None:
-        own = resampled(z[None], n)[0]
-        spectrum, best = np.fft.fft(own - own.mean()), 0j
-        for sense in (spectrum, spectrum[(-np.arange(n)) % n]):
-            found = np.fft.ifft(np.fft.fft(target) * np.conj(sense))
-            best = max(best, found[np.abs(found).argmax()], key=abs)
-    else:
-        whole, angles = np.append(z, z[:1]), np.arange(len(z) + 1) * (TURN / len(z))
-        along = np.append(0.0, np.cumsum(np.abs(np.diff(whole))))
-        ends = np.interp(np.array([part[0], part[0] + part[1]]) % 1.0, along / along[-1], angles)
-        window = (float(ends[0]), float((ends[1] - ends[0]) % TURN))
-        traced = np.interp((window[0] + window[1] * np.linspace(0.0, 1.0, len(z))) % TURN, angles, whole)
-        own = resampled(traced[None], n, closed=False)[0]
-        best = max((np.vdot(sense - own.mean(), target) for sense in (own, own[::-1])), key=abs)
-    scale = complex(best) / float(np.sum(np.abs(own - own.mean()) ** 2))
-    return scale, complex(target.mean() - scale * own.mean()), window
+    n, rows = targets.shape[1], np.arange(len(z))
+    if parts is None:
+        own = resampled(z, n)
+        spectrum, other = np.fft.fft(own - own.mean(axis=1, keepdims=True)), np.fft.fft(targets)
+        best = np.zeros(len(z), complex)
+        for sense in (spectrum, spectrum[:, (-np.arange(n)) % n]):
+            found = np.fft.ifft(other * np.conj(sense))
+            found = found[rows, np.abs(found).argmax(axis=1)]
+            best = np.where(np.abs(found) > np.abs(best), found, best)
+        return *_scaled(best, own, targets), None
+    whole, angles = np.hstack([z, z[:, :1]]), np.arange(z.shape[1] + 1) * (TURN / z.shape[1])
+    along = np.hstack([np.zeros((len(z), 1)), np.cumsum(np.abs(np.diff(whole, axis=1)), axis=1)])
+    along /= along[:, -1:]
+    ends = _interpolated(np.stack([parts[:, 0], parts.sum(axis=1)], axis=-1) % 1.0, along, angles)
+    window = np.stack([ends[:, 0], (ends[:, 1] - ends[:, 0]) % TURN], axis=-1)
+    at = (window[:, :1] + window[:, 1:] * np.linspace(0.0, 1.0, z.shape[1])) % TURN
+    return *part_laid(_interpolated(at, np.broadcast_to(angles, whole.shape), whole, TURN), targets), window
+
+
+def part_laid(z: Number, targets: Number) -> tuple[Number, Number]:
+    """Return scales and places that lay open curves (n, poses) on targets (n, places), evenly along both, either way."""
+    own = resampled(z, targets.shape[1], closed=False)
+    forth, back = (on_target(sense, targets) for sense in (own, own[:, ::-1]))
+    is_forth = np.abs(forth[0]) >= np.abs(back[0])
+    return np.where(is_forth, forth[0], back[0]), np.where(is_forth, forth[1], back[1])
+
+
+def _interpolated(at: Number, x: Number, y: Number, long: float = 1.0) -> Number:
+    """Return rows of y over x at places from 0 to `long`, each row by itself in one interpolation."""
+    rows = 2.0 * long * np.arange(len(x))[:, None]
+    y = np.broadcast_to(y, x.shape)
+    return np.interp((rows + at).ravel(), (rows + x).ravel(), y.ravel()).reshape(at.shape)
+
+
+def on_target(own: Number, targets: Number) -> tuple[Number, Number]:
+    """Return scales and places that lay curves on targets, place on place (n, places)."""
+    best = (np.conj(own - own.mean(axis=1, keepdims=True)) * targets).sum(axis=1)
+    return _scaled(best, own, targets)
+
+
+def _scaled(best: Number, own: Number, targets: Number) -> tuple[Number, Number]:
+    middle = own.mean(axis=1)
+    scale = best / np.sum(np.abs(own - middle[:, None]) ** 2, axis=1)
+    return scale, targets.mean(axis=1) - scale * middle
 
 
 @checked
@@ -312,27 +487,27 @@ def coupler_atlas(
     if folder is None:
         return _atlas(links, count, seed)
     where = Path(folder)
-    definition = json.dumps({"format": 1, "links": links, "count": count, "seed": seed}) + "\n"
+    definition = json.dumps({"format": 2, "links": links, "count": count, "seed": seed}) + "\n"
     fingerprint = hashlib.sha256(definition.encode()).hexdigest()[:16]
     kept = _definition_in(where)
     if kept is None:
         with new_folder(where) as fresh:
             for k, (chain, designs, descriptors) in enumerate(_all_made(links, count, seed)):
                 columns = {one.name: designs[:, n] for n, one in enumerate(chain.numbers)}
-                columns[_DESCRIPTOR] = descriptors.view(np.float32)
-                (fresh / _file(k)).write_bytes(part_content(_columns(chain), [columns], fingerprint))
+                columns[_DESCRIPTOR.name] = np.ravel(descriptors.view(f"V{descriptors.strides[0]}"))
+                (fresh / _file(k)).write_bytes(part_content([*_numbers(chain), _DESCRIPTOR], [columns], fingerprint))
             (fresh / _DEFINITION).write_text(definition, encoding="utf-8")
     elif kept != definition:
         raise InvalidInput(
             Problem(str(folder), "it holds another atlas", f"it is {kept.strip()[:200]}: name a new one")
         )
     shares = _shares(chains, count)
-    return CouplerAtlas(tuple(AtlasPart(chain, share, None, where / _file(k), fingerprint)
+    return CouplerAtlas(tuple(AtlasPart(chain, share, None, where / _file(k))
                               for k, (chain, share) in enumerate(zip(chains, shares, strict=True))))  # fmt: skip
 
 
 # The file that says what an atlas in a folder is, and the column of descriptors.
-_DEFINITION, _DESCRIPTOR = "atlas.json", "descriptor"
+_DEFINITION, _DESCRIPTOR = "atlas.json", StudyColumn("descriptor", "", "output")
 
 
 def _definition_in(folder: Path) -> str | None:
@@ -349,9 +524,8 @@ def _file(k: int) -> str:
     return f"{k:03d}{suffix_for('table', 'parquet')}"
 
 
-def _columns(chain: CurveChain) -> list[StudyColumn]:
-    columns = [StudyColumn(one.name, "", "dimension") for one in chain.numbers]
-    return [*columns, StudyColumn(_DESCRIPTOR, "", "output", 4 * HARMONICS)]
+def _numbers(chain: CurveChain) -> list[StudyColumn]:
+    return [StudyColumn(one.name, "", "dimension") for one in chain.numbers]
 
 
 @lru_cache(maxsize=4)
@@ -430,12 +604,15 @@ def likeness(descriptors: Number, wanted: Number) -> tuple[Number, Number]:
     """
     from scipy.fft import ifft  # in single precision, as descriptors are kept
 
+    wanted = np.conj(wanted).astype(np.complex64)
     back = descriptors[:, ::-1]  # orders are 1..n, -n..-1
     spectrum = np.zeros((len(descriptors), STARTS), np.complex64)
     found = []
     for own in (descriptors, back, np.conj(back), np.conj(descriptors)):
-        spectrum[:, _ORDERS] = own * np.conj(wanted)
-        found.append(np.abs(ifft(spectrum, axis=1)).max(axis=1) * STARTS)
+        spectrum[:, 1 : HARMONICS + 1] = own[:, :HARMONICS] * wanted[:HARMONICS]
+        spectrum[:, -HARMONICS:] = own[:, HARMONICS:] * wanted[HARMONICS:]
+        at = ifft(spectrum, axis=1)
+        found.append(np.sqrt((at.real**2 + at.imag**2).max(axis=1)) * STARTS)
     plain, mirrored = np.maximum(*found[:2]), np.maximum(*found[2:])
     return np.maximum(plain, mirrored), mirrored > plain
 

@@ -8,21 +8,34 @@ against each other, so that a curve comes near as a whole. Rotation, size and pl
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.dimensional.candidates import Candidates, Linkage
-from compoundkin.dimensional.coupler_atlas import AtlasMatch, best_laid, coupler_atlas, mean_distance, resampled
+from compoundkin.dimensional.coupler_atlas import (
+    AtlasMatch,
+    SoughtCurve,
+    best_laid,
+    coupler_atlas,
+    mean_distance,
+    on_target,
+    part_laid,
+    resampled,
+)
 from compoundkin.dimensional.curve_chains import CurveChain, Laying, turn
-from compoundkin.dimensional.defects import SolvedLinkage, judged
-from compoundkin.dimensional.tasks import Conditions, CurveTask
+from compoundkin.dimensional.curve_conditions import CurveConditions, LaidDesigns
+from compoundkin.dimensional.defects import Rejection, SolvedLinkage, judged
+from compoundkin.dimensional.tasks import Conditions, CurveTask, CurveTiming
 
 # Designs of the atlas, how many of them are refined, how many answers are given beside so many of each number of links,
 # and how many of one kind of linkage while others are there.
 DESIGNS, STARTED, GIVEN, SIMPLE, OF_A_KIND = 200_000, 200, 6, 2, 3
+# Verdicts on linkages, at most.
+MOST_JUDGED = 40
 # Lengths that differ by less than this part make no other linkage.
 ALIKE = 0.1
 # Rounds in which what remains farther than this sum of squares is moved and grown.
@@ -31,7 +44,7 @@ ROUNDS, NEAR = 3, 2e-4
 MOVED, MOVES, MOVED_BY = 8, 8, (0.02, 0.4)
 # How many of the best grow, not more of a chain than this; the dyads that are drawn for each pair of links and mode,
 # and how many of the most promising are taken of each, and of all.
-GROWN, OF_A_CHAIN, DRAWN, TAKEN, MOST_TAKEN = 5, 2, 256, 3, 10
+GROWN, OF_A_CHAIN, DRAWN, TAKEN, MOST_TAKEN = 5, 3, 256, 3, 10
 # How many designs of a number of links are kept from a round; which are the same.
 KEPT, SAME = 24, 1e-6
 # The weight of the ends of an open curve; the least part of the turn that traces it.
@@ -53,13 +66,19 @@ FLOOR, FARTHEST = 1e-6, 0.5
 ALONG = 0.1
 # Added to lengths that are divided by, in the target's RMS radius.
 NO_LENGTH = 1e-12
+# Places of a target are whole multiples of this part of its RMS radius: how a curve lies changes their rounding, which
+# hundreds of steps would make to other answers.
+GRAIN = 2.0**-20
+# The lesser part by which the first harmonic of one sense must surpass that of the other to be taken.
+GREATER = 1e-6
 
 
 class FittedCurve(NamedTuple):
     """A design laid on a curve.
 
     `apart` is the mean nearest distance both ways, summed, in the target's RMS radius, `error` half of that in the
-    target's units. An open curve is traced while the crank turns from `window[0]` by `window[1]`.
+    target's units; with a `timing` they are of the distances at the times. An open curve, or one with timing, is traced
+    while the crank turns from `window[0]` by `window[1]`.
     """
 
     chain: CurveChain
@@ -68,85 +87,143 @@ class FittedCurve(NamedTuple):
     apart: float
     error: float
     window: tuple[float, float] | None = None
+    timing: CurveTiming | None = None
 
     @property
     def linkage(self) -> Linkage:
         """The linkage at positions over a whole turn, or over the part of it that traces an open curve."""
         angles = turn(POSITIONS)
         if self.window is not None:
-            angles = self.window[0] + self.window[1] * np.linspace(0.0, 1.0, POSITIONS)
+            parts = np.linspace(0.0, 1.0, POSITIONS) if self.timing is None else self.timing.parts
+            some = parts[np.unique(np.linspace(0, len(parts) - 1, 2 * POSITIONS).astype(int))]
+            angles = self.window[0] + self.window[1] * some
         return self.chain.linkage(self.design, self.laying, angles, self.error)
 
 
 class CurveTarget(NamedTuple):
-    """A curve that designs are refined to: `places` (PLACES,) evenly along it, of RMS radius one about zero.
+    """A curve that designs are refined to: `places` (places,) along it, of RMS radius one about zero.
 
-    It is ``size * places + middle``; an open one is traced by a part of the turn.
+    It is ``size * places + middle``. Places are evenly along it, with a `timing` those at its times. Steps keep the
+    `conditions` on what is seen at that size and place.
     """
 
     places: Number
     closed: bool
     size: complex
     middle: complex
+    timing: CurveTiming | None = None
+    conditions: CurveConditions = CurveConditions(Conditions())
 
     @classmethod
-    def of(cls, curve: Number, closed: bool) -> CurveTarget:
+    def of(
+        cls, curve: Number, closed: bool, timing: CurveTiming | None = None, conditions: Conditions | None = None
+    ) -> CurveTarget:
         """Return the target of a curve, turned by its greater first harmonic: nothing depends on how a curve lies."""
         places = resampled(curve[None], PLACES, closed)[0]
-        middle, first = complex(places.mean()), np.fft.fft(places)[[1, -1]]
-        turn = complex(first[np.abs(first).argmax()])
-        size = complex(np.sqrt(np.mean(np.abs(places - middle) ** 2)) * (turn / abs(turn) if turn else 1.0))
-        return cls((places - middle) / size, closed, size, middle)
+        middle, (first, other) = complex(places.mean()), np.fft.fft(places)[[1, -1]]
+        turn = complex(other if abs(other) > (1.0 + GREATER) * abs(first) else first)
+        radius = float(np.sqrt(np.mean(np.abs(places - middle) ** 2)))
+        size = radius * (turn / abs(turn) if abs(turn) > GREATER * radius * PLACES else 1.0 + 0j)
+        if timing is not None:
+            kept = np.unique(np.linspace(0, len(curve) - 1, PLACES).astype(int))
+            places, timing = curve[kept], timing._replace(parts=timing.parts[kept])
+        places = (places - middle) / size
+        places = GRAIN * (np.round(places.real / GRAIN) + 1j * np.round(places.imag / GRAIN))
+        seen = CurveConditions(Conditions() if conditions is None else conditions.seen_from(size, middle))
+        return cls(places, closed, size, middle, timing, seen)
 
     @property
-    def mirrored(self) -> CurveTarget:
-        """Its mirror image."""
-        return self._replace(places=np.conj(self.places))
+    def sought(self) -> SoughtCurve:
+        """The curve to look for in an atlas."""
+        return SoughtCurve(self.places, self.closed, self.timing, self.conditions)
 
     @property
-    def laying(self) -> int:
-        """How many unknowns lay a design on it: size, angle and place; of an open one also which part traces it."""
-        return 4 if self.closed else 6
+    def has_window(self) -> bool:
+        """Whether two unknowns say which part of the turn traces it."""
+        return not self.closed or self.timing is not None
+
+    @property
+    def parts(self) -> Number:
+        """The parts of the window at which designs are computed: steps between them are small."""
+        even = np.linspace(0.0, 1.0, POSES)
+        return even if self.timing is None else np.union1d(even, self.timing.parts)
+
+    @property
+    def compared(self) -> Any:
+        """Those of the poses at its `parts` that are compared with its places."""
+        return slice(None) if self.timing is None else np.searchsorted(self.parts, self.timing.parts)
+
+    def seen(self, mirrored: Number) -> Number:
+        """Return its places for designs, mirrored or not, (designs, places)."""
+        return np.where(mirrored[:, None], np.conj(self.places), self.places)
 
 
 class _RefinedDesigns(NamedTuple):
-    """Designs of one chain that are refined together to a target, perhaps mirrored.
+    """Designs of one chain that are refined together to a target, some of them `mirrored` (designs,).
 
-    `x` are their numbers, of an open target the crank's angle at its begin and the turn from there, then the logarithm
-    of the scale, its angle and the place, (designs, numbers + laying). `cost` is the sum of squares (designs,).
+    `x` are their numbers, of a target with a window the crank's angle at its begin and the turn from there, then the
+    logarithm of the scale, its angle and the place, (designs, unknowns). `cost` is the sum of squares (designs,).
     """
 
     chain: CurveChain
-    mirrored: bool
     target: CurveTarget
+    mirrored: Number
     x: Number
     cost: Number
 
+    @classmethod
+    def fresh(cls, chain: CurveChain, target: CurveTarget, mirrored: Number, x: Number) -> _RefinedDesigns:
+        """Return designs whose costs are not known."""
+        return cls(chain, target, mirrored, x, np.full(len(x), np.inf))
+
+    @property
+    def designs(self) -> Number:
+        """The numbers of the designs."""
+        return self.x[:, : len(self.chain.numbers)]
+
+    @property
+    def held(self) -> Number:
+        """Which designs hold the target's conditions (designs,)."""
+        if not self.target.conditions or not len(self.x):
+            return np.ones(len(self.x), bool)
+        scale, place = _scale_and_place(self.x)
+        return self.target.conditions.held(LaidDesigns(self.chain, self.designs, scale, place, self.mirrored))
+
     def refined(self, steps: int, early: bool = False) -> _RefinedDesigns:
-        """Return them after so many steps; `early` ones are by the arc's length."""
-        x = self.x.copy()
-        r, j, clear = _residuals(self.chain, x, self.target, early)
-        cost = np.where(clear, (r**2).sum(axis=1), np.inf)
-        damping = np.full(len(x), FIRST)
+        """Return them after so many steps; `early` ones are by the arc's length.
+
+        No step is taken that comes to a limit, or from where conditions hold to where they do not.
+        """
+        now = self._replace(x=self.x.copy())
+        r, j, clear = _residuals(now, early)
+        cost, held = np.where(clear, (r**2).sum(axis=1), np.inf), now.held
+        damping = np.full(len(now.x), FIRST)
         for _ in range(steps):
             alive = np.flatnonzero(damping < HOPELESS)
             if not len(alive):
                 break
-            step = _levenberg(r[alive], j[alive], damping[alive])
-            ahead = x[alive] - np.clip(step, -FARTHEST, FARTHEST)
-            tried, steep, clear = _residuals(self.chain, ahead, self.target, early)
+            ahead = now.best(alive)
+            ahead = ahead._replace(
+                x=ahead.x - np.clip(_levenberg(r[alive], j[alive], damping[alive]), -FARTHEST, FARTHEST)
+            )
+            tried, steep, clear = _residuals(ahead, early)
             costs = (tried**2).sum(axis=1)
-            better = clear & (costs < cost[alive])
-            gain = 1.0 - costs[better] / cost[alive][better]
-            to = alive[better]
-            x[to], r[to], j[to], cost[to] = ahead[better], tried[better], steep[better], costs[better]
-            damping[alive] = np.clip(damping[alive] * np.where(better, EASIER, HARDER), LEAST, 2.0 * HOPELESS)
+            better = np.flatnonzero(clear & (costs < cost[alive]))
+            holds = ahead.best(better).held
+            kept = holds | ~held[alive[better]]
+            better, to = better[kept], alive[better[kept]]
+            gain = 1.0 - costs[better] / cost[to]
+            held[to] = holds[kept]
+            now.x[to], r[to], j[to], cost[to] = ahead.x[better], tried[better], steep[better], costs[better]
+            factor = np.full(len(alive), HARDER)
+            factor[better] = EASIER
+            damping[alive] = np.clip(damping[alive] * factor, LEAST, 2.0 * HOPELESS)
             damping[to[gain < SETTLED]] *= SLOWER
-        return self._replace(x=x, cost=cost)
+        return now._replace(cost=cost)
 
     def best(self, kept: Number) -> _RefinedDesigns:
         """Return some of them."""
-        return self._replace(x=self.x[kept], cost=self.cost[kept])
+        return self._replace(mirrored=self.mirrored[kept], x=self.x[kept], cost=self.cost[kept])
 
 
 def traced(task: CurveTask) -> Candidates:
@@ -156,40 +233,51 @@ def traced(task: CurveTask) -> Candidates:
     each number of links the best.
     """
     atlas = coupler_atlas(min(task.links, 6), DESIGNS)
-    wanted = task.conditions
-    limits = {"region": wanted.region, "transmission": wanted.transmission}
-    matches = atlas.near(task.points, STARTED, closed=task.closed, **limits)
-    if not matches:  # what comes near without them is told, with what it misses
-        matches = atlas.near(task.points, STARTED, closed=task.closed)
-    found = fitted(matches, task.points, task.closed, task.links)
-    different = list[Linkage]()
+    target = CurveTarget.of(task.points, task.closed, task.timing, task.conditions)
+    matches = atlas.nearest(target.sought, STARTED)
+    if not matches:  # what comes near without conditions is told, with what it misses
+        target = target._replace(conditions=CurveConditions(Conditions()))
+        matches = atlas.nearest(target.sought, STARTED)
+    found = _fitted(matches, target, task.links, ROUNDS)
+    verdicts = list[SolvedLinkage | Rejection]()
     # of each number of links, though fewer are seldom the nearest
     for links in sorted({one.chain.links for one in found}):
-        different += _different([one for one in found if one.chain.links == links], SIMPLE, different)
-    different += _different(found, GIVEN, different, wanted)
-    complete = f"the best {len(different)} of {len(atlas)} designs of {len(atlas.chains)} chains, refined"
-    if task.links > 6:
+        _judge([one for one in found if one.chain.links == links], SIMPLE, verdicts, task)
+    _judge(found, GIVEN, verdicts, task)
+    complete = f"the best {len(verdicts)} of {len(atlas)} designs of {len(atlas.chains)} chains, refined"
+    if task.links > 4:
         complete += " and grown"
-    return Candidates(different, complete, is_family=True)
+    return Candidates([one.candidate for one in verdicts], complete, is_family=True, verdicts=tuple(verdicts))
 
 
-def _different(
-    found: Sequence[FittedCurve], count: int, others: Sequence[Linkage], wanted: Conditions | None = None
-) -> list[Linkage]:
-    """Return so many of the best as linkages, none like another or like others, few of one kind before all kinds.
+def _judge(
+    found: Sequence[FittedCurve], count: int, verdicts: list[SolvedLinkage | Rejection], task: CurveTask
+) -> None:
+    """Append what is said of the best linkages, until so many more are without a defect.
 
-    Where conditions are given, they fulfil them.
+    None is like another, few are of one kind before all kinds.
     """
-    different, rest = list[Linkage](), list[Linkage]()
-    for made in (one.linkage for one in found):
-        if len(different) == count:
+    rest, wanted = list[Linkage](), count
+    kinds = Counter(one.candidate.title for one in verdicts if isinstance(one, SolvedLinkage))
+    for made, is_rest in _linkages(found, rest):
+        if not wanted or len(verdicts) > MOST_JUDGED:
             break
-        if any(not _unlike(made, other) for other in (*others, *different, *rest)):
+        if any(not _unlike(made, other.candidate) for other in verdicts):
             continue
-        if wanted is None or isinstance(judged(made, wanted, np.inf), SolvedLinkage):
-            kinds = [other.title for other in (*others, *different)]
-            (different if kinds.count(made.title) < OF_A_KIND else rest).append(made)
-    return different + rest[: count - len(different)]
+        if kinds[made.title] >= OF_A_KIND and not is_rest:
+            rest.append(made)
+            continue
+        verdict = judged(made, task.conditions, task.tolerance or np.inf)
+        verdicts.append(verdict)
+        if isinstance(verdict, SolvedLinkage):
+            kinds[made.title] += 1
+            wanted -= 1
+
+
+def _linkages(found: Sequence[FittedCurve], rest: list[Linkage]) -> Iterator[tuple[Linkage, bool]]:
+    """Yield linkages, then those that have been put to the rest meanwhile."""
+    yield from ((one.linkage, False) for one in found)
+    yield from ((made, True) for made in rest)
 
 
 def _unlike(one: Linkage, other: Linkage) -> bool:
@@ -207,23 +295,30 @@ def fitted(
     Where they remain far, those of fewer links than `links` grow by dyads, and the best are moved and refined again, in
     so many `rounds`; in zero for whoever waits for a first answer.
     """
-    target = CurveTarget.of(curve, closed)
+    return _fitted(matches, CurveTarget.of(curve, closed), links, ROUNDS if rounds is None else rounds)
+
+
+def _fitted(matches: Sequence[AtlasMatch], target: CurveTarget, links: int, rounds: int) -> list[FittedCurve]:
     found = _best(_refined(_begun(matches, target)))
     rng = np.random.default_rng(0)
-    for _ in range(ROUNDS if rounds is None else rounds):
+    for _ in range(rounds):
         if not found or min(part.cost.min() for part in found) < NEAR:
             break
-        found = _best([*found, *_refined(_moved(found, rng), 0), *_refined(_grown(found, links, rng), 0)])
-    return sorted((one for part in found for one in _laid(part.refined(LAST))), key=lambda one: one.apart)
+        found = _best([*found, *_refined([*_moved(found, rng), *_grown(found, links, rng)], 0)])
+    return sorted((one for part in _given(found) for one in _laid(part.refined(LAST))), key=lambda one: one.apart)
 
 
 def _refined(begun: Iterable[_RefinedDesigns], early: int = EARLY) -> list[_RefinedDesigns]:
-    """Return designs refined, the best of all and the best of each chain and sense to the end."""
-    parts = [part.refined(EARLY, early=True) if early else part for part in begun]
+    """Return designs refined, the best of all to the end."""
+    parts = [part.refined(EARLY, early=True) if early and part.target.timing is None else part for part in begun]
     parts = [part.refined(FIRST_STEPS) for part in parts]
     costs = np.sort(np.concatenate([part.cost for part in parts])) if parts else np.zeros(0)
-    return [part.best((part.cost <= costs[:BEST][-1]) | (part.cost == part.cost.min())).refined(STEPS)
-            for part in parts]  # fmt: skip
+    refined = list[_RefinedDesigns]()
+    for part in parts:
+        to_end = part.cost <= costs[:BEST][-1]
+        refined += [part.best(to_end).refined(STEPS)] if to_end.any() else []
+        refined += [part.best(~to_end)] if not to_end.all() else []
+    return refined
 
 
 def _best(parts: Sequence[_RefinedDesigns]) -> list[_RefinedDesigns]:
@@ -232,15 +327,40 @@ def _best(parts: Sequence[_RefinedDesigns]) -> list[_RefinedDesigns]:
     for links in sorted({part.chain.links for part in parts}):
         own = [part for part in parts if part.chain.links == links]
         least = np.sort(np.concatenate([part.cost for part in own]))[:KEPT][-1]
-        for chain, mirrored in dict.fromkeys((part.chain, part.mirrored) for part in own):
-            same = [part for part in own if part.chain is chain and part.mirrored == mirrored]
-            x, cost = np.concatenate([part.x for part in same]), np.concatenate([part.cost for part in same])
-            order = np.argsort(cost, kind="stable")
-            apart = np.append(True, np.abs(np.diff(x[order], axis=0)).max(axis=1) > SAME)
-            order = order[apart & ((cost[order] <= least) | (np.arange(len(order)) == 0)) & np.isfinite(cost[order])]
+        for chain in dict.fromkeys(part.chain for part in own):
+            one = _joined([part for part in own if part.chain is chain])
+            order = np.lexsort((one.mirrored, one.cost))
+            x = np.column_stack([one.x, one.mirrored])[order]
+            apart = np.append(True, np.abs(np.diff(x, axis=0)).max(axis=1) > SAME)
+            cost = one.cost[order]
+            order = order[apart & ((cost <= least) | (np.arange(len(order)) == 0)) & np.isfinite(cost)]
             if len(order):
-                found.append(same[0]._replace(x=x[order], cost=cost[order]))
+                found.append(one.best(order))
     return found
+
+
+def _given(found: Sequence[_RefinedDesigns]) -> list[_RefinedDesigns]:
+    """Return the best designs of each number of links, not of each chain."""
+    given = list[_RefinedDesigns]()
+    for links in sorted({part.chain.links for part in found}):
+        own = [part for part in found if part.chain.links == links]
+        least = np.sort(np.concatenate([part.cost for part in own]))[:KEPT][-1]
+        given += [part.best(part.cost <= least) for part in own if part.cost.min() <= least]
+    return given
+
+
+def _joined(parts: Sequence[_RefinedDesigns]) -> _RefinedDesigns:
+    """Return designs of one chain as one."""
+    x, cost = np.concatenate([part.x for part in parts]), np.concatenate([part.cost for part in parts])
+    return parts[0]._replace(mirrored=np.concatenate([part.mirrored for part in parts]), x=x, cost=cost)
+
+
+def _by_chain(parts: Iterable[_RefinedDesigns]) -> list[_RefinedDesigns]:
+    """Return designs, those of each chain together: a program is called once for all of them."""
+    same = dict[CurveChain, list[_RefinedDesigns]]()
+    for part in parts:
+        same.setdefault(part.chain, []).append(part)
+    return [_joined(each) for each in same.values()]
 
 
 def _nearest(parts: Sequence[_RefinedDesigns], count: int) -> Iterator[_RefinedDesigns]:
@@ -250,31 +370,33 @@ def _nearest(parts: Sequence[_RefinedDesigns], count: int) -> Iterator[_RefinedD
         yield parts[n].best(np.array([k]))
 
 
-def _moved(found: Sequence[_RefinedDesigns], rng: np.random.Generator) -> Iterator[_RefinedDesigns]:
-    """Yield the best designs, each moved to several places about."""
+def _moved(found: Sequence[_RefinedDesigns], rng: np.random.Generator) -> list[_RefinedDesigns]:
+    """Return the best designs, each moved to several places about."""
+    moved = list[_RefinedDesigns]()
     for one in _nearest(found, MOVED):
         low, high = np.log(MOVED_BY)
         far = np.exp(low + (high - low) * rng.random((MOVES, 1)))
         around = one.x + far * rng.standard_normal((MOVES, one.x.shape[1]))
-        _, clear = one.chain.curves(around[:, : len(one.chain.numbers)], POSES)
-        if clear.any():
-            yield one._replace(x=around[clear], cost=np.full(clear.sum(), np.inf))
+        if one.target.timing is not None and one.target.timing.turn:
+            around[:, -5] = one.x[:, -5]
+        moved.append(one.fresh(one.chain, one.target, np.repeat(one.mirrored, MOVES), around))
+    return [part.best(clear) for part in _by_chain(moved) if (clear := part.chain.curves(part.designs, POSES)[1]).any()]
 
 
-def _grown(found: Sequence[_RefinedDesigns], links: int, rng: np.random.Generator) -> Iterator[_RefinedDesigns]:
-    """Yield the best designs with a dyad more: of many dyads those that promise most by their first step."""
-    for one in _nearest([part for part in found if part.chain.links < links], GROWN):
+def _grown(found: Sequence[_RefinedDesigns], links: int, rng: np.random.Generator) -> list[_RefinedDesigns]:
+    """Return the best designs with a dyad more: of many dyads those that promise most by their first step."""
+    grown = list[_RefinedDesigns]()
+    for one in _nearest([part for part in found if part.chain.links + 2 <= links], GROWN):
         promises = list[tuple[float, CurveChain, Number]]()
         for second in one.chain.carriers:
             for sign in (1, -1):
                 larger = one.chain.grown(second, sign)
                 gains, designs = _promised(one, larger, rng.random((DRAWN, len(larger.numbers))))
                 promises += [(gains[k], larger, designs[k]) for k in np.argsort(-gains)[:TAKEN]]
-        taken = sorted(promises, key=lambda each: -each[0])[:MOST_TAKEN]
-        for larger in dict.fromkeys(chain for _, chain, _ in taken):
-            designs = np.array([design for _, chain, design in taken if chain is larger])
-            x = np.hstack([designs, np.repeat(one.x[:, len(one.chain.numbers) :], len(designs), axis=0)])
-            yield _RefinedDesigns(larger, one.mirrored, one.target, x, np.full(len(x), np.inf))
+        for _, larger, design in sorted(promises, key=lambda each: -each[0])[:MOST_TAKEN]:
+            x = np.append(design, one.x[0, len(one.chain.numbers) :])[None]
+            grown.append(one.fresh(larger, one.target, one.mirrored, x))
+    return _by_chain(grown)
 
 
 def _promised(one: _RefinedDesigns, larger: CurveChain, units: Number) -> tuple[Number, Number]:
@@ -282,23 +404,23 @@ def _promised(one: _RefinedDesigns, larger: CurveChain, units: Number) -> tuple[
 
     Only P's two coordinates on the new rod are new to the curve, and by them it moves as the rod turns.
     """
-    n = len(one.chain.numbers)
-    designs = one.chain.grown_designs(larger, np.repeat(one.x[:, :n], len(units), axis=0), units)
+    designs = one.chain.grown_designs(larger, np.repeat(one.designs, len(units), axis=0), units)
     ahead = designs.copy()
     ahead[:, -2] += 1.0  # P one along the rod
-    r, old, clear = _residuals(one.chain, one.x, one.target, False)
-    angles = _angles(one.chain, one.x, one.target)[0]
-    z, _ = one.chain.places(one.x[:, :n], angles)
+    r, old, clear = _residuals(one, False)
+    angles, at = _angles(one)[0], one.target.compared
+    z = one.chain.places(one.designs, angles)[0][:, at]
     _, turns = larger.curves(designs, POSES)
     designs, ahead = designs[turns], ahead[turns]
     if not len(designs) or not clear.all():
         return np.zeros(0), designs
     moved, clear = larger.places(ahead, angles)
-    scale, place = np.exp(complex(one.x[0, -4], one.x[0, -3])), complex(one.x[0, -2], one.x[0, -1])
-    way = scale * (moved - z)
+    scale, place = (each[0] for each in _scale_and_place(one.x))
+    way = scale * (moved[:, at] - z)
     w = np.repeat(scale * z + place, len(designs), axis=0)
-    tangent = scale * np.repeat(_traced(one.chain, one.x, one.target)[2], len(designs), axis=0)
-    _, new = _gaps(w, tangent, np.array([way, 1j * way]), one.target)
+    tangent = scale * np.repeat(_traced(one)[2], len(designs), axis=0)
+    targets = np.repeat(one.target.seen(one.mirrored), len(designs), axis=0)
+    _, new = _gaps(w, tangent, np.array([way, 1j * way]), targets, one.target)
     across = np.linalg.qr(old[0])[0]
     new = new - across @ (across.T @ new)
     normal = np.swapaxes(new, 1, 2) @ new
@@ -309,42 +431,48 @@ def _promised(one: _RefinedDesigns, larger: CurveChain, units: Number) -> tuple[
 
 
 def _begun(matches: Sequence[AtlasMatch], target: CurveTarget) -> Iterator[_RefinedDesigns]:
-    """Yield matches by their chains, mirrored or not, as they are laid on the target."""
+    """Yield matches by their chains as they are laid on the target."""
     for chain in dict.fromkeys(match.chain for match in matches):
-        for mirrored in (False, True):
-            own = [match for match in matches if match.chain is chain and match.laying.mirrored == mirrored]
-            if not own:
-                continue
-            designs = np.array([match.design for match in own], float)
-            curves, clear = chain.curves(designs, POSES)
-            if not clear.any():  # more poses come nearer to limits than those of the atlas
-                continue
-            wanted = target.mirrored if mirrored else target
-            x = [[*designs[k], *_unknowns(curves[k], wanted, own[k].part)] for k in np.flatnonzero(clear)]
-            yield _RefinedDesigns(chain, mirrored, wanted, np.array(x), np.full(len(x), np.inf))
-
-
-def _unknowns(z: Number, target: CurveTarget, part: tuple[float, float] | None) -> list[float]:
-    """Return the unknowns that lay a curve, or a part of it, on the target."""
-    scale, place, window = best_laid(z, target.places, part)
-    return [*window, float(np.log(abs(scale))), float(np.angle(scale)), place.real, place.imag]
+        own = [match for match in matches if match.chain is chain]
+        designs = np.array([match.design for match in own], float)
+        z, clear = chain.curves(designs, POSES)
+        if not clear.any():  # more poses come nearer to limits than those of the atlas
+            continue
+        mirrored = np.array([match.laying.mirrored for match in own])
+        columns, places = list[Number](), target.seen(mirrored)
+        if target.has_window:
+            window = np.array([match.window for match in own])
+            columns.append(window)
+            z = chain.places(designs, window[:, :1] + window[:, 1:] * target.parts)[0][:, target.compared]
+            scale, place = (part_laid if target.timing is None else on_target)(z, places)
+        else:
+            scale, place, _ = best_laid(z, places)
+        columns.append(np.stack([np.log(np.abs(scale)), np.angle(scale), place.real, place.imag], axis=-1))
+        x = np.hstack([designs, *columns])
+        yield _RefinedDesigns.fresh(chain, target, mirrored[clear], x[clear])
 
 
 def _laid(part: _RefinedDesigns) -> Iterator[FittedCurve]:
     """Yield refined designs in the units and at the place of the curve."""
     n, target = len(part.chain.numbers), part.target
-    _, clear = part.chain.curves(part.x[:, :n], 4 * POSES)
-    angles = turn(4 * POSES)
-    size, middle = (np.conj(each) if part.mirrored else each for each in (target.size, target.middle))
-    for x in part.x[clear]:
-        window = None if target.closed else (float(x[n]), float(x[n + 1]))
-        if window is not None:
-            angles = window[0] + window[1] * np.linspace(0.0, 1.0, 2 * POSES)
-        z, _ = part.chain.places(x[None, :n], angles)
-        scale, place = complex(np.exp(complex(x[-4], x[-3]))), complex(x[-2], x[-1])
-        apart = mean_distance(scale * z[0] + place, target.places, target.closed)
-        laying = Laying(scale * size, place * size + middle, part.mirrored)
-        yield FittedCurve(part.chain, x[:n], laying, apart, apart * abs(size) / 2.0, window)
+    _, clear = part.chain.curves(part.designs, 4 * POSES)
+    for x, is_mirrored in zip(part.x[clear], part.mirrored[clear].tolist(), strict=True):
+        angles, window = turn(4 * POSES), None
+        if target.has_window:
+            window = (float(x[n]), float(x[n + 1]))
+            angles = window[0] + window[1] * (
+                np.linspace(0.0, 1.0, 2 * POSES) if target.timing is None else target.parts
+            )
+        z = part.chain.places(x[None, :n], angles)[0][:, target.compared]
+        scale, place = (complex(each[0]) for each in _scale_and_place(x[None]))
+        w, places = scale * z[0] + place, np.conj(target.places) if is_mirrored else target.places
+        if target.timing is None:
+            apart = mean_distance(w, places, target.closed)
+        else:
+            apart = 2.0 * float(np.abs(w - places).mean())
+        size, middle = (np.conj(each) if is_mirrored else each for each in (target.size, target.middle))
+        laying = Laying(scale * size, place * size + middle, is_mirrored)
+        yield FittedCurve(part.chain, x[:n], laying, apart, apart * abs(size) / 2.0, window, target.timing)
 
 
 def _levenberg(r: Number, j: Number, damping: Number) -> Number:
@@ -356,61 +484,84 @@ def _levenberg(r: Number, j: Number, damping: Number) -> Number:
     return np.linalg.solve(normal, slope)[:, :, 0]
 
 
-def _angles(chain: CurveChain, x: Number, target: CurveTarget) -> Number:
-    """Return the angles of the crank at which designs are compared with a target, (1 or designs, POSES)."""
-    if target.closed:
+def _scale_and_place(x: Number) -> tuple[Number, Number]:
+    """Return how unknowns lay designs: scales and places, (designs,)."""
+    return np.exp(x[:, -4] + 1j * x[:, -3]), x[:, -2] + 1j * x[:, -1]
+
+
+def _angles(one: _RefinedDesigns) -> Number:
+    """Return the angles of the crank at which designs are compared with their target, (1 or designs, poses)."""
+    if not one.target.has_window:
         return turn(POSES)[None]
-    n = len(chain.numbers)
-    return x[:, [n]] + x[:, [n + 1]] * np.linspace(0.0, 1.0, POSES)
+    n = len(one.chain.numbers)
+    return one.x[:, [n]] + one.x[:, [n + 1]] * one.target.parts
 
 
-def _traced(chain: CurveChain, x: Number, target: CurveTarget) -> tuple[Number, Number, Number, Number]:
+def _traced(one: _RefinedDesigns) -> tuple[Number, Number, Number, Number]:
     """Return curves, their slopes by all unknowns but the last four and by the crank, and which designs are clear."""
-    n = len(chain.numbers)
-    angles = _angles(chain, x, target)
-    z, by, by_crank, clear = chain.slopes(x[:, :n], angles[0] if target.closed else angles)
-    if target.closed:
+    target, angles = one.target, _angles(one)
+    z, by, by_crank, clear = one.chain.slopes(one.designs, angles if target.has_window else angles[0])
+    if not target.has_window:
         return z, by, by_crank, clear
     # all of the turn is there, and no more than that is traced
-    clear = clear & chain.curves(x[:, :n], POSES // 2)[1] & (x[:, n + 1] > LEAST_TURN) & (x[:, n + 1] < TURN)
-    return z, np.concatenate([by, [by_crank, by_crank * np.linspace(0.0, 1.0, POSES)]]), by_crank, clear
+    turned = np.abs(one.x[:, len(one.chain.numbers) + 1])
+    clear = clear & one.chain.curves(one.designs, POSES // 2)[1]
+    is_free = target.timing is None or not target.timing.turn
+    if is_free:
+        clear &= (turned > LEAST_TURN) & (turned < TURN)
+    by_window = [by_crank, by_crank * target.parts if is_free else np.zeros_like(by_crank)]
+    at = target.compared
+    return z[:, at], np.concatenate([by, by_window])[:, :, at], by_crank[:, at], clear
 
 
-def _residuals(chain: CurveChain, x: Number, target: CurveTarget, early: bool) -> tuple[Number, Number, Number]:
+def _residuals(one: _RefinedDesigns, early: bool) -> tuple[Number, Number, Number]:
     """Return residuals (designs, n), slopes (designs, n, numbers) and which designs are clear."""
-    z, by, by_crank, clear = _traced(chain, x, target)
+    target = one.target
+    z, by, by_crank, clear = _traced(one)
     if not clear.all():  # what is not clear means nothing, and is not taken
         z, by, by_crank = (np.where(clear[:, None], each, 1.0) for each in (z, by, by_crank))
-    scale, place = np.exp(x[:, [-4]] + 1j * x[:, [-3]]), x[:, [-2]] + 1j * x[:, [-1]]
-    turned = scale * z
+    scale, place = (each[:, None] for each in _scale_and_place(one.x))
+    turned, places = scale * z, target.seen(one.mirrored)
     w = turned + place
     slopes = np.concatenate([scale * by, np.array([turned, 1j * turned, np.ones_like(w), np.full_like(w, 1j)])])
-    if not early:
-        return *_gaps(w, scale * by_crank, slopes, target), clear
-    own = w - target.places[_by_arc(w, target)]
+    if early:
+        at = _by_arc(w, places, target.closed)
+        return *_plane(w - places[np.arange(len(w))[:, None], at], slopes), clear
+    return *_gaps(w, scale * by_crank, slopes, places, target), clear
+
+
+def _plane(gaps: Number, slopes: Number) -> tuple[Number, Number]:
+    """Return complex residuals (designs, n) and their slopes (numbers, designs, n) as real ones."""
     steep = np.concatenate([slopes.real, slopes.imag], axis=2)
-    return np.concatenate([own.real, own.imag], axis=1), np.moveaxis(steep, 0, 2), clear
+    return np.concatenate([gaps.real, gaps.imag], axis=1), np.moveaxis(steep, 0, 2)
 
 
-def _gaps(w: Number, tangent: Number, slopes: Number, target: CurveTarget) -> tuple[Number, Number]:
-    """Return residuals (designs, n) of curves to the nearest places, and their slopes (designs, n, numbers)."""
-    places = target.places
+def _gaps(w: Number, tangent: Number, slopes: Number, places: Number, target: CurveTarget) -> tuple[Number, Number]:
+    """Return residuals (designs, n) of curves to the nearest places, and their slopes (designs, n, numbers).
+
+    `places` are the target's for each design, (designs, places); with timing each is held against its own pose.
+    """
+    if target.timing is not None:  # they count as much as poses and places without timing do
+        counted = float(np.sqrt(2.0 * POSES / places.shape[1]))
+        return _plane(counted * (w - places), counted * slopes)
     length = _lengths(w, target.closed)
     if target.closed:
-        weight, ahead = length + np.roll(length, 1, 1), np.roll(places, -1) - np.roll(places, 1)
+        weight, ahead = length + np.roll(length, 1, 1), np.roll(places, -1, 1) - np.roll(places, 1, 1)
     else:
-        weight, ahead = np.zeros(w.shape), np.gradient(places)
+        weight, ahead = np.zeros(w.shape), np.gradient(places, axis=1)
         weight[:, 1:] += length
         weight[:, :-1] += length
     plane = np.stack([w.real, w.imag], axis=-1)
-    square = (np.abs(w) ** 2)[:, :, None] + np.abs(places) ** 2 - 2.0 * (plane @ np.stack([places.real, places.imag]))
+    square = plane @ np.stack([-2.0 * places.real, -2.0 * places.imag], axis=1)
+    square += (np.abs(w) ** 2)[:, :, None]
+    square += (np.abs(places) ** 2)[:, None, :]
     rows, at, nearest = np.arange(len(w))[:, None], square.argmin(axis=1), square.argmin(axis=2)
     # each pose counts by its part of the arc, as if they lay evenly along it
     share = np.sqrt(weight / (2.0 * length.sum(axis=1, keepdims=True)) * POSES)
     parts, steeps = list[Number](), list[Number]()
     for own, t, slope, counted in (
         (w[rows, at] - places, tangent[rows, at], slopes[:, rows, at], 1.0),
-        (w - places[nearest], ahead[nearest], slopes, share),
+        (w - places[rows, nearest], ahead[rows, nearest], slopes, share),
     ):
         across = counted * np.conj(t) / (np.abs(t) + NO_LENGTH)
         turned_r, turned_j = own * across, slope * across
@@ -418,7 +569,7 @@ def _gaps(w: Number, tangent: Number, slopes: Number, target: CurveTarget) -> tu
         steeps += [turned_j.imag, ALONG * turned_j.real]
     if not target.closed:  # the ends of what is traced are held at those of the target
         ends = w[:, [0, -1]]
-        gaps = ends - places[[0, -1]], ends - places[[-1, 0]]
+        gaps = ends - places[:, [0, -1]], ends - places[:, [-1, 0]]
         forth = np.abs(gaps[0]).sum(axis=1) <= np.abs(gaps[1]).sum(axis=1)
         own, slope = ENDS * np.where(forth[:, None], *gaps), ENDS * slopes[:, :, [0, -1]]
         parts += [own.real, own.imag]
@@ -431,11 +582,11 @@ def _lengths(w: Number, closed: bool) -> Number:
     return np.abs(np.roll(w, -1, 1) - w if closed else np.diff(w, axis=1)) + NO_LENGTH
 
 
-def _by_arc(w: Number, target: CurveTarget) -> Number:
-    """Return the places of the target that lie at equal parts of its arc with poses, from the best start."""
-    n, length = len(target.places), _lengths(w, target.closed)
+def _by_arc(w: Number, places: Number, closed: bool) -> Number:
+    """Return which places of targets lie at equal parts of the arc with poses, from the best start."""
+    n, length = places.shape[1], _lengths(w, closed)
     along = np.cumsum(length, axis=1) / length.sum(axis=1, keepdims=True)
-    if target.closed:
+    if closed:
         weight = length
         index = np.round((along - length / length.sum(axis=1, keepdims=True)) * n).astype(int)
         starts = np.arange(0, n, 4)[:, None, None]
@@ -443,5 +594,5 @@ def _by_arc(w: Number, target: CurveTarget) -> Number:
     else:
         index = np.round(np.pad(along, ((0, 0), (1, 0))) * (n - 1)).astype(int)
         choices, weight = np.stack([index, n - 1 - index]), np.ones(w.shape)
-    gaps = (np.abs(w - target.places[choices]) ** 2 * weight).sum(axis=2)
+    gaps = (np.abs(w - places[np.arange(len(w))[:, None], choices]) ** 2 * weight).sum(axis=2)
     return choices[gaps.argmin(axis=0), np.arange(len(w))]

@@ -12,6 +12,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -24,18 +25,20 @@ from compoundkin.base.poses import Pose
 from compoundkin.configurations.circuit import CircuitPlace
 from compoundkin.configurations.circuit_search import Circuits, circuits
 from compoundkin.dimensional.candidates import Linkage
-from compoundkin.dimensional.tasks import Conditions, extent
+from compoundkin.dimensional.tasks import Conditions, extent, inside, meets
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at
 from compoundkin.kinematics.quantities import owner_of, quantity
 from compoundkin.model.attributes import LEAST, TRANSMISSION_INDEX
+from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 
-ORDER, BRANCH, CIRCUIT, TURNING, TRANSMISSION, REGION, LENGTH, ASSEMBLY, ACCURACY = (
-    "order", "branch", "circuit", "no full turn", "transmission", "region", "length", "assembly", "accuracy",
+ORDER, BRANCH, CIRCUIT, TURNING, TRANSMISSION, OBSTACLE, REGION, LENGTH, ASSEMBLY, ACCURACY = (
+    "order", "branch", "circuit", "no full turn", "transmission", "obstacle", "region", "length", "assembly",
+    "accuracy",
 )  # fmt: skip
 # The least of defects first: of several drivers the one whose defect is least tells.
-SEVERITY = (ACCURACY, TRANSMISSION, TURNING, BRANCH, ORDER, CIRCUIT, LENGTH, REGION, ASSEMBLY)
+SEVERITY = (ACCURACY, TRANSMISSION, OBSTACLE, TURNING, BRANCH, ORDER, CIRCUIT, LENGTH, REGION, ASSEMBLY)
 # A solved position may miss its place by so much, in parts of the linkage: next to limit positions rounding grows to
 # its root.
 MISSED = 1e-6
@@ -280,7 +283,26 @@ def _solved(candidate: Linkage, course: _Course, conditions: Conditions, toleran
     least = least_transmission(motion, between=False)
     if least < conditions.transmission:
         return _poor(least, candidate, driver)
+    met = _met(motion, conditions)
+    if met:
+        return Rejection(OBSTACLE, met, candidate, driver)
     return SolvedLinkage(mechanism, motion, driver, values, turns, candidate.error + max(missed), least, candidate)
+
+
+def _met(motion: Motion, conditions: Conditions) -> str:
+    """Return which link meets an obstacle where over a motion, else nothing: pins and lines between points of links."""
+    at = {letter: np.ravel(point.position) + np.zeros(motion.inputs.poses) for letter, point in motion.points.items()}
+    for k, obstacle in enumerate(conditions.obstacles):
+        for letter, carriers in motion.mechanism.carriers.items():
+            if FRAME in carriers and inside(at[letter][:1], obstacle)[0]:
+                return f"the fixed pivot {letter} is in obstacle {k}"
+        for name, each in motion.mechanism.geometry.points.items():
+            for a, b in combinations(each, 2) if name != FRAME else ():
+                found = np.flatnonzero(meets(at[a], at[b], obstacle))
+                if len(found):
+                    place = at[a][found[0]]
+                    return f"{name} meets obstacle {k}, with {a} at ({place.real:.6g}, {place.imag:.6g})"
+    return ""
 
 
 def missed_by(candidate: Linkage, motion: Motion) -> tuple[float, float]:

@@ -166,12 +166,14 @@ def synthesise(
     transmission: float = 0.0,
     turning: bool = False,
     prefer: str | None = None,
+    obstacles: Any = None,
 ) -> Answer:
     """Return the mechanisms that do what a task of `tasks` says, ranked, and the candidates with defects.
 
     `region` holds all fixed pivots: two opposite corners or a polygon. `lengths` are the least and greatest length of
     links between joints, `ground` places of fixed pivots that are given. `transmission` is the least transmission angle
-    (radians), `turning` asks for a driver that turns fully. `prefer` ranks by "transmission", by "compactness",
+    (radians), `turning` asks for a driver that turns fully. `obstacles` are polygons that pins, and the lines between
+    points of a moving link, keep clear of. `prefer` ranks by "transmission", by "compactness",
     the sum of lengths, or by "accuracy"; functions that are approached by accuracy if it is left out. Raises
     InvalidInput for what is no task or condition.
 
@@ -183,7 +185,7 @@ def synthesise(
     >>> answer.complete
     '4 real dyads of 4, 6 linkages'
     """
-    asked = task.under(Conditions.of(region, lengths, ground, transmission, turning, prefer or _usual(task)))
+    asked = task.under(Conditions.of(region, lengths, ground, transmission, turning, prefer or _usual(task), obstacles))
     method = next((one for one in METHODS if isinstance(task, one.of) and one.fits(task)), None)
     if method is None:
         raise InvalidInput(Problem("task", f"no method meets {task.in_words}", "see the page on synthesis for tasks"))
@@ -192,7 +194,9 @@ def synthesise(
     tolerance = (
         np.inf if isinstance(task, FunctionTask | DwellTask | CurveTask) and not task.tolerance else task.tolerance
     )
-    found = [judged(one, asked.conditions, tolerance) for one in candidates]
+    found = candidates.verdicts
+    if found is None:
+        found = tuple(judged(one, asked.conditions, tolerance) for one in candidates)
     bad = [one for one in found if isinstance(one, Rejection)]
     good = sorted((one for one in found if isinstance(one, SolvedLinkage)), key=_rank(asked.conditions.prefer))
     complete = candidates.complete

@@ -5,14 +5,14 @@ A task has so many precision positions, which answers meet exactly, or within it
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple, Self
 
 import numpy as np
 
 from compoundkin.base.arguments import checked, planar_numbers, real_numbers
-from compoundkin.base.arrays import Number
+from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.display import ShortRepr, count_phrase, short_repr
 from compoundkin.base.errors import InvalidInput, Problem, nearest, suggestion
 from compoundkin.model.geometry import FRAME
@@ -37,7 +37,8 @@ class Conditions(ShortRepr):
 
     `region` is a polygon (corners, complex) that holds all fixed pivots, `lengths` the least and greatest length
     between two joints, `ground` are places at which the fixed pivots must be. `transmission` is the least transmission
-    angle (radians), `turning` whether the driver must turn fully. `prefer` ranks the answers.
+    angle (radians), `turning` whether the driver must turn fully. `prefer` ranks the answers. `obstacles` are polygons
+    that pins, and the lines between points of a moving link, keep clear of.
     """
 
     region: Number = None
@@ -46,9 +47,13 @@ class Conditions(ShortRepr):
     transmission: float = 0.0
     turning: bool = False
     prefer: str = TRANSMISSION
+    obstacles: tuple[Number, ...] = ()
 
     @classmethod
-    def of(cls, region: Any, lengths: Any, ground: Any, transmission: float, turning: bool, prefer: str) -> Conditions:
+    def of(
+        cls, region: Any, lengths: Any, ground: Any, transmission: float, turning: bool, prefer: str,
+        obstacles: Any = None,
+    ) -> Conditions:  # fmt: skip
         """Return conditions as users give them. Raises InvalidInput for what is none."""
         if prefer not in PREFERENCES:
             raise InvalidInput(Problem("prefer", f"{prefer!r} is no preference", f"one of {', '.join(PREFERENCES)}"))
@@ -57,27 +62,47 @@ class Conditions(ShortRepr):
         known = () if ground is None else tuple(places("ground", ground).tolist())
         if len(set(known)) < len(known):
             raise InvalidInput(Problem("ground", "a place is given twice", "no two fixed pivots are at one place"))
-        return cls(_polygon(region), _bounds(lengths), known, transmission, turning, prefer)
+        return cls(
+            _polygon("region", region), _bounds(lengths), known, transmission, turning, prefer, _obstacles(obstacles)
+        )
+
+    def seen_from(self, size: complex, middle: complex) -> Conditions:
+        """Return the conditions on what is seen at p where it is at ``size * p + middle``."""
+        region = None if self.region is None else (self.region - middle) / size
+        lengths = None if self.lengths is None else (self.lengths[0] / abs(size), self.lengths[1] / abs(size))
+        ground = tuple((place - middle) / size for place in self.ground)
+        obstacles = tuple((obstacle - middle) / size for obstacle in self.obstacles)
+        return replace(self, region=region, lengths=lengths, ground=ground, obstacles=obstacles)
 
     def holds(self, place: complex) -> bool:
         """Return whether the region holds a place."""
         return self.region is None or bool(inside(np.array([place]), self.region)[0])
 
 
-def _polygon(region: Any) -> Number:
+def _polygon(where: str, region: Any) -> Number:
     """Return the corners of a region, given as two opposite corners or as a polygon."""
     if region is None:
         return None
-    corners = places("region", region)
+    corners = places(where, region)
     if len(corners) == 2:
         low, high = corners
         corners = np.array([low, complex(high.real, low.imag), high, complex(low.real, high.imag)])
     if len(corners) < 2:
-        raise InvalidInput(Problem("region", "one corner is no region", "give two opposite corners, or a polygon"))
+        raise InvalidInput(Problem(where, "one corner is no region", "give two opposite corners, or a polygon"))
     area = np.sum(np.conj(corners) * np.roll(corners, -1)).imag / 2.0
     if abs(area) <= SAME * np.ptp(np.abs(corners - corners[0])) ** 2:
-        raise InvalidInput(Problem("region", "it has no area", "give two opposite corners, or a polygon"))
+        raise InvalidInput(Problem(where, "it has no area", "give two opposite corners, or a polygon"))
     return corners
+
+
+def _obstacles(given: Any) -> tuple[Number, ...]:
+    if given is None:
+        return ()
+    if not isinstance(given, Iterable) or isinstance(given, str | bytes | Mapping):
+        raise InvalidInput(
+            Problem("obstacles", "they are no polygons", "give a list of polygons, each a list of corners")
+        )
+    return tuple(_polygon(f"obstacles[{k}]", one) for k, one in enumerate(given))
 
 
 def _bounds(lengths: Any) -> tuple[float, float] | None:
@@ -101,6 +126,22 @@ def inside(place: Number, polygon: Number) -> Number:
     with np.errstate(divide="ignore", invalid="ignore"):
         cut = a.real + (p.imag - a.imag) * (b - a).real / (b - a).imag
     return np.sum(rising & (p.real < cut), axis=-1) % 2 == 1
+
+
+def meets(a: Number, b: Number, polygon: Number) -> Number:
+    """Return whether straight lines from places to others meet a polygon: cross one of its sides, or lie in it.
+
+    >>> meets(np.array([-1j, 0.5 - 1j]), np.array([1j, 0.5 + 1j]), np.array([0.1, 1, 1 + 0.5j])).tolist()
+    [False, True]
+    """
+    p, q = polygon, np.roll(polygon, -1)
+    a, b = np.asarray(a)[..., None], np.asarray(b)[..., None]
+
+    def side(of: Number, to: Number, place: Number) -> Number:
+        return (np.conj(to - of) * (place - of)).imag > 0.0
+
+    crossed = (side(a, b, p) != side(a, b, q)) & (side(p, q, a) != side(p, q, b))
+    return crossed.any(axis=-1) | inside(a[..., 0], polygon)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -177,22 +218,37 @@ class TimedPointTask(Task):
         return f"a point through {count_phrase(len(self.points), 'point')} at given crank angles"
 
 
+class CurveTiming(NamedTuple):
+    """When a point is where on a curve: `parts` of the driver's turn from its begin, (n,), from 0 to 1 at its end.
+
+    A closed curve ends a whole turn later. `turn` is the angle by which the driver turns meanwhile (radians), zero
+    where any will do; in `either` sense, or in that of its sign.
+    """
+
+    parts: Number
+    turn: float
+    either: bool
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class CurveTask(Task):
-    """A point traces a curve through `points`, complex (n,), with any timing, of a linkage of at most so many `links`.
+    """A point traces a curve through `points`, complex (n,), of a linkage of at most so many `links`.
 
-    A curve that is not `closed` is traced by a part of the driver's turn; the rest of it is free.
+    A curve that is not `closed` is traced by a part of the driver's turn; the rest of it is free. Without a `timing`
+    any will do.
     """
 
     points: Number
     closed: bool
     links: int
+    timing: CurveTiming | None = None
 
     @property
     def in_words(self) -> str:
         """The task as a phrase."""
         how = "a closed curve" if self.closed else "an open curve"
-        return f"a point along {how} of {count_phrase(len(self.points), 'point')}"
+        when = "" if self.timing is None else " with timing"
+        return f"a point along {how} of {count_phrase(len(self.points), 'point')}{when}"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -360,15 +416,21 @@ def points(points: Any, *, at: Any = None, tolerance: float = 0.0) -> PointTask 
 
 
 @checked
-def curve(points: Any, *, closed: bool | None = None, links: int = 6, tolerance: float = 0.0) -> CurveTask:
+def curve(
+    points: Any, *, at: Any = None, times: Any = None, closed: bool | None = None, links: int = 6,
+    tolerance: float = 0.0,
+) -> CurveTask:  # fmt: skip
     """Return the task of a point that traces a drawn curve; the nearest linkages are found, and how far off they are.
 
     `points` are complex or (n, 2), eight or more along the curve, joined by straight lines. It is `closed` if its ends
     meet, within a twentieth of its extent or about as near as points follow each other, unless this is said; an open
     one is traced by a part of the driver's turn.
+    With any timing, unless the points are those `at` angles of the driver (radians, from any zero, rising where it
+    turns counterclockwise), or at `times` of a driver that turns evenly, either way. A closed curve takes a whole turn:
+    its last point is the first again, or the last time is followed by a step that is the mean of the others.
     Linkages have four, six or eight `links`; their driver turns fully.
     Within a `tolerance`, the mean distance, or as near as they come.
-    Raises InvalidInput for too few points, or other numbers of links.
+    Raises InvalidInput for too few points, other numbers of links, and angles or times that go back and forth.
 
     >>> curve(np.exp(1j * np.linspace(0, 6, 30)) * (2 + np.cos(np.linspace(0, 12, 30)))).in_words
     'a point along an open curve of 30 points'
@@ -376,15 +438,45 @@ def curve(points: Any, *, closed: bool | None = None, links: int = 6, tolerance:
     found = places("points", points)
     if links not in (4, 6, 8):
         raise InvalidInput(Problem("links", f"linkages of {links} links are not in the atlas", "take 4, 6 or 8"))
-    found = np.concatenate([found[:1], found[1:][np.diff(found) != 0.0]])
-    if len(found) < FEWEST_OF_CURVE:
-        what = f"{count_phrase(len(found), 'different point')}: too few for a curve"
+    moving = np.concatenate([found[:1], found[1:][np.diff(found) != 0.0]])
+    if len(moving) < FEWEST_OF_CURVE:
+        what = f"{count_phrase(len(moving), 'different point')}: too few for a curve"
         raise InvalidInput(Problem("points", what, f"give {FEWEST_OF_CURVE} or more, or take the task `points`"))
-    meets = abs(found[-1] - found[0]) <= max(MEETING * extent(found), NEXT * np.abs(np.diff(found)).max())
+    meets = abs(moving[-1] - moving[0]) <= max(MEETING * extent(moving), NEXT * np.abs(np.diff(moving)).max())
     is_closed = bool(meets if closed is None else closed)
+    is_timed = at is not None or times is not None
+    timing = _timing(at, times, found, is_closed) if is_timed else None
+    found = found if is_timed else moving
     if is_closed and found[-1] == found[0]:
         found = found[:-1]
-    return CurveTask(found, is_closed, links, tolerance=_tolerance(tolerance))
+    return CurveTask(found, is_closed, links, timing, tolerance=_tolerance(tolerance))
+
+
+def _timing(at: Any, times: Any, points: Number, closed: bool) -> CurveTiming:
+    """Return when points are reached, of angles or times for each. Raises InvalidInput for what is no timing."""
+    if at is not None and times is not None:
+        raise InvalidInput(Problem("times", "angles are given too", "leave out at or times"))
+    where = "times" if at is None else "at"
+    values = real_numbers(where, times if at is None else at)
+    if values.shape != (len(points),):
+        what = f"{count_phrase(values.size, 'number')} for {count_phrase(len(points), 'point')}"
+        raise InvalidInput(Problem(where, what, "give one for each point"))
+    _finite(where, values)
+    steps = np.diff(values)
+    if not (np.all(steps > 0.0) or (at is not None and np.all(steps < 0.0))):
+        k = int(np.flatnonzero(steps * np.sign(steps[0] if at is not None else 1.0) <= 0.0)[0])
+        raise InvalidInput(
+            Problem(f"{where}[{k + 1}]", "it does not follow the one before", "give them in their order")
+        )
+    again = closed and points[-1] == points[0]
+    long = float(values[-1] - values[0])
+    whole = long if again or not closed else long + long / len(steps)
+    if at is not None:
+        if abs(long) > TURN * (1.0 + SAME):
+            raise InvalidInput(Problem(where, f"{np.rad2deg(abs(long)):.6g} degrees are more than a turn", "radians"))
+        whole = float(np.copysign(TURN, long)) if closed else long
+    parts = (values - values[0]) / whole
+    return CurveTiming(parts[:-1] if again else parts, whole if at is not None else TURN * closed, at is None)
 
 
 @checked
@@ -693,7 +785,7 @@ _KINDS: Mapping[str, _TaskOfFile] = {
     "poses": _TaskOfFile(poses, ("link", "poses"), ("velocities", "accelerations", "tolerance")),
     "points": _TaskOfFile(points, ("points",), ("at", "tolerance")),
     "mixed": _TaskOfFile(mixed, ("poses", "points"), ("link", "tolerance")),
-    "curve": _TaskOfFile(curve, ("points",), ("closed", "links", "tolerance")),
+    "curve": _TaskOfFile(curve, ("points",), ("at", "times", "closed", "links", "tolerance")),
     "function": _TaskOfFile(function, ("pairs",), ("linkage", "absolute", "links", "tolerance")),
     "swing": _TaskOfFile(swing, ("angle",), ("time_ratio",)),
     "stroke": _TaskOfFile(stroke, ("length",), ("time_ratio", "linkage", "offset")),
@@ -701,7 +793,7 @@ _KINDS: Mapping[str, _TaskOfFile] = {
 }
 # The keys of each kind, and those of conditions.
 KEYS: Mapping[str, tuple[str, ...]] = {kind: (*one.needed, *one.optional) for kind, one in _KINDS.items()}
-CONDITIONS = ("region", "lengths", "ground", "transmission", "turning", "prefer")
+CONDITIONS = ("region", "lengths", "ground", "transmission", "turning", "prefer", "obstacles")
 
 
 def read_task(document: Mapping[str, Any]) -> tuple[Task, dict[str, Any]]:

@@ -413,14 +413,26 @@ def write_part(
                           for one, array, unit in zip(chosen, arrays, units, strict=True)]  # fmt: skip
                 schema = arrow.schema(fields, metadata={STUDY: fingerprint, b"angles": b"radians"})
                 texts = [each.name for each in fields if each.type == arrow.string()]
-                writer = parquet().ParquetWriter(file, schema, use_dictionary=texts, write_page_checksum=True)
+                pressed = {each.name: "NONE" if _is_bytes(each.type) else "SNAPPY" for each in fields}
+                writer = parquet().ParquetWriter(file, schema, use_dictionary=texts, write_page_checksum=True,
+                                                 compression=pressed)  # fmt: skip
             writer.write_table(arrow.Table.from_arrays(arrays, schema=writer.schema), row_group_size=ROWS_TOGETHER)
     finally:
         if writer is not None:
             writer.close()
 
 
+def _is_bytes(of: Any) -> bool:
+    """Return whether a type of Parquet is bytes of a fixed number."""
+    return str(of).startswith("fixed_size_binary")
+
+
 def _array(arrow: Any, values: Number, width: int | None) -> Any:
+    if values.dtype.kind == "V":  # bytes of rows, which are read five times as fast as lists of numbers
+        kept = np.ascontiguousarray(values)
+        return arrow.FixedSizeBinaryArray.from_buffers(
+            arrow.binary(kept.dtype.itemsize), len(kept), [None, arrow.py_buffer(kept.view(np.uint8))]
+        )
     if width is None:
         return arrow.array(values, type=arrow.string() if values.dtype == object else None)
     return arrow.FixedSizeListArray.from_arrays(arrow.array(np.ravel(values)), width)
@@ -485,6 +497,9 @@ def _values(table: Any, column: StudyColumn) -> Number:
     """Return a column of a table, or of one batch of it."""
     found = table.column(column.name)
     found = found.combine_chunks() if hasattr(found, "combine_chunks") else found
+    if _is_bytes(found.type):
+        place = found.offset * found.type.byte_width
+        return np.frombuffer(found.buffers()[1], f"V{found.type.byte_width}", len(found), place)
     if column.width is not None:
         return np.asarray(found.flatten()).reshape(-1, column.width)
     if str(found.type) == "string":

@@ -1,0 +1,161 @@
+"""Conditions on many designs of a chain at once, where they are laid on a curve: what they hold at poses of a turn.
+
+They are those of `tasks.Conditions` and a greatest size. Pivots and lengths are read off the designs; transmission
+angles, and whether pins and links keep clear of obstacles, are outputs of a program over a turn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.dimensional.candidates import POINT
+from compoundkin.dimensional.curve_chains import CRANK, CurveChain, turn
+from compoundkin.dimensional.tasks import Conditions, inside, meets
+from compoundkin.model.attributes import POSITION, TRANSMISSION_INDEX
+from compoundkin.model.geometry import FRAME
+from compoundkin.programs.call_numbers import Call
+from compoundkin.programs.compiled_path import CompiledPath, compile
+from compoundkin.structure import decompose
+
+# Poses of a turn at which conditions are looked at, and designs whose motion is looked at together.
+POSES, TOGETHER = 64, 256
+
+
+class LaidDesigns(NamedTuple):
+    """Designs of a chain (designs, numbers) and how each is laid: arrays (designs,) of the parts of a `Laying`."""
+
+    chain: CurveChain
+    designs: Number
+    scale: Number
+    place: Number
+    mirrored: Number
+
+    def some(self, kept: Number) -> LaidDesigns:
+        """Return some of them."""
+        return LaidDesigns(self.chain, *(each[kept] for each in self[1:]))
+
+    def laid(self, z: Number) -> Number:
+        """Return places of the chain, (designs,) or (designs, poses), where they lie."""
+        shape = (len(self.designs),) + (1,) * (np.ndim(z) - 1)
+        found = self.scale.reshape(shape) * z + self.place.reshape(shape)
+        return np.where(self.mirrored.reshape(shape), np.conj(found), found)
+
+
+class CurveConditions(NamedTuple):
+    """Conditions on linkages that trace a curve, and the greatest sum of their lengths."""
+
+    wanted: Conditions
+    size: float | None = None
+
+    def __bool__(self) -> bool:
+        return any((self.wanted.region is not None, self.wanted.lengths, self.wanted.transmission,
+                    self.wanted.obstacles, self.size is not None))  # fmt: skip
+
+    def held(self, laid: LaidDesigns) -> Number:
+        """Return which designs hold them, (designs,)."""
+        held = np.ones(len(laid.designs), bool)
+        for holds in (self._pivots, self._lengths, self._motion):
+            left = np.flatnonzero(held)
+            if not len(left):
+                break
+            held[left] = holds(laid.some(left))
+        return held
+
+    def _pivots(self, laid: LaidDesigns) -> Number:
+        held, region = np.ones(len(laid.designs), bool), self.wanted.region
+        if region is None and not self.wanted.obstacles:
+            return held
+        for pivot in _points(laid)[FRAME].values():
+            place = laid.laid(pivot)
+            if region is not None:
+                held &= inside(place, region)
+            for obstacle in self.wanted.obstacles:
+                held &= ~inside(place, obstacle)
+        return held
+
+    def _lengths(self, laid: LaidDesigns) -> Number:
+        held, bounds = np.ones(len(laid.designs), bool), self.wanted.lengths
+        if bounds is None and self.size is None:
+            return held
+        points = _points(laid)
+        pivots = tuple(points.pop(FRAME).values())
+        scale = np.abs(laid.scale)
+        lengths = [scale * np.abs(b - a) for each in points.values()
+                   for a, b in combinations([at for letter, at in each.items() if letter != POINT], 2)]  # fmt: skip
+        if bounds is not None:
+            for one in lengths:
+                held &= (one >= bounds[0]) & (one <= bounds[1])
+        if self.size is not None:
+            held &= sum(lengths) + scale * np.abs(pivots[0] - pivots[-1]) <= self.size
+        return held
+
+    def _motion(self, laid: LaidDesigns) -> Number:
+        held = np.ones(len(laid.designs), bool)
+        if not self.wanted.transmission and not self.wanted.obstacles:
+            return held
+        for first in range(0, len(held), TOGETHER):
+            held[first : first + TOGETHER] = self._moving(laid.some(np.arange(len(held))[first : first + TOGETHER]))
+        return held
+
+    def _moving(self, laid: LaidDesigns) -> Number:
+        chain, designs = laid.chain, laid.designs
+        designs = np.repeat(designs, 2, axis=0) if len(designs) == 1 else designs
+        call = Call({CRANK: turn(POSES)}, chain.dimensions(designs))
+        held = np.ones(len(laid.designs), bool)
+        if self.wanted.transmission:
+            found, clear = _indices(chain).programs.unscreened(call)
+            held &= clear[: len(held)]
+            for index in found.values():
+                held &= (index >= np.sin(self.wanted.transmission)).all(axis=1)[: len(held)]
+        if self.wanted.obstacles and held.any():
+            found, clear = _places(chain).programs.unscreened(call)
+            held &= clear[: len(held)]
+            at = {name.removesuffix(f".{POSITION}"): laid.laid(z[: len(held)] + np.zeros(POSES))
+                  for name, z in found.items()}  # fmt: skip
+            for a, b in bars(chain.mechanism.geometry.points):
+                for obstacle in self.wanted.obstacles:
+                    held[held] &= ~meets(at[a][held], at[b][held], obstacle).any(axis=1)
+        return held
+
+
+def bars(links: Mapping[str, Iterable[str]]) -> Iterator[tuple[str, str]]:
+    """Yield the letters of points that lines of moving links join, of the letters of each link."""
+    for name, letters in links.items():
+        if name != FRAME:
+            yield from combinations(letters, 2)
+
+
+def _points(laid: LaidDesigns) -> dict[str, dict[str, Number]]:
+    """Return the points of each link of designs in the link's own coordinates, in units of the chain: (designs,)."""
+    own = {name: column[:, 0] for name, column in laid.chain.dimensions(laid.designs).items()}
+    still = np.zeros(len(laid.designs), complex)
+    return {
+        name: {
+            letter: own.get(f"{name}.{letter}", own.get(f"{name}.{letter}.x", p)) + still for letter, p in each.items()
+        }
+        for name, each in laid.chain.mechanism.geometry.points.items()
+    }
+
+
+@cache
+def _indices(chain: CurveChain) -> CompiledPath:
+    """Return the program of the transmission indices of a chain's dyads."""
+    groups = decompose(chain.mechanism).groups
+    dyads = [group.links[0] for group in groups if len(group.links) == 2]
+    return _compiled(chain, [f"{name}.{TRANSMISSION_INDEX}" for name in dyads])
+
+
+@cache
+def _places(chain: CurveChain) -> CompiledPath:
+    """Return the program of the places of all points of a chain."""
+    return _compiled(chain, [f"{letter}.{POSITION}" for letter in chain.mechanism.carriers])
+
+
+def _compiled(chain: CurveChain, outputs: list[str]) -> CompiledPath:
+    return compile(chain.mechanism, outputs, free=chain.program.free)
