@@ -438,7 +438,7 @@ def best_laid(z: Number, targets: Number, parts: Number | None = None) -> tuple[
 
 
 def part_laid(z: Number, targets: Number) -> tuple[Number, Number]:
-    """Return scales and places that lay open curves (n, poses) on targets (n, places), evenly along both, either way."""
+    """Return scales and places that lay open curves (n, poses) on targets (n, places) evenly along them, either way."""
     own = resampled(z, targets.shape[1], closed=False)
     forth, back = (on_target(sense, targets) for sense in (own, own[:, ::-1]))
     is_forth = np.abs(forth[0]) >= np.abs(back[0])
