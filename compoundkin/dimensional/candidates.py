@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,9 +22,6 @@ from compoundkin.model.elements import Item, Link, drawn, drive, link
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import slide
-
-if TYPE_CHECKING:
-    from compoundkin.dimensional.defects import Rejection, SolvedLinkage
 
 # The coupler's name where a task names no body, and its point.
 COUPLER, POINT = "coupler", "P"
@@ -105,7 +102,7 @@ class Candidates:
     found: object = None
     nearest: str = ""
     is_family: bool = False
-    verdicts: tuple[SolvedLinkage | Rejection, ...] | None = None
+    verdicts: tuple[Any, ...] | None = None
 
     def __iter__(self) -> Iterator[Linkage]:
         return iter(self.linkages)
