@@ -17,7 +17,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.dimensional.candidates import POINT
 from compoundkin.dimensional.curve_chains import CRANK, CurveChain, turn
 from compoundkin.dimensional.tasks import Conditions, inside, meets
-from compoundkin.model.attributes import POSITION, TRANSMISSION_INDEX
+from compoundkin.model.attributes import POSITION, TRANSMISSION_INDEX, component_names
 from compoundkin.model.geometry import FRAME
 from compoundkin.programs.call_numbers import Call
 from compoundkin.programs.compiled_path import CompiledPath, compile
@@ -137,7 +137,8 @@ def _points(laid: LaidDesigns) -> dict[str, dict[str, Number]]:
     still = np.zeros(len(laid.designs), complex)
     return {
         name: {
-            letter: own.get(f"{name}.{letter}", own.get(f"{name}.{letter}.x", p)) + still for letter, p in each.items()
+            letter: own.get(f"{name}.{letter}", own.get(component_names(f"{name}.{letter}")[0], p)) + still
+            for letter, p in each.items()
         }
         for name, each in laid.chain.mechanism.geometry.points.items()
     }
