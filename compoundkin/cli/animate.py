@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from compoundkin.base.suffixes import alternatives
-from compoundkin.cli.drive_options import ARROWS, DESIGN, LABELS, PATHS, drive_options, explain_gaps, solve_motion_at
+from compoundkin.cli.drive_options import (
+    ARROWS,
+    DESIGN,
+    LABELS,
+    PATHS,
+    drive_options,
+    explain_gaps,
+    find_forces,
+    solve_motion_at,
+)
 from compoundkin.cli.file_options import load_mechanism, mechanism_argument, to_file
 from compoundkin.cli.shell import counting, put, say
 
@@ -30,6 +39,7 @@ Examples:
   compoundkin animate six-bar --vectors velocity --size 1280 -o six-bar.mp4
   compoundkin animate geneva-wheel --seconds 6 --fps 50 -o geneva.gif
   compoundkin animate crank-rocker --at 0 --speed 9 --time 0:2:0.01 -o a.mp4
+  compoundkin animate engine-gas-pressure --forces -o engine.gif
 """
 )
 @mechanism_argument
@@ -37,6 +47,7 @@ Examples:
 @DESIGN
 @PATHS
 @ARROWS
+@click.option("--forces", is_flag=True, help="Draw the forces in pairs, of drivers, loads and inertia, to one scale.")
 @click.option("--centres", is_flag=True, help="Draw the instant centres that are on the picture.")
 @LABELS
 @click.option(
@@ -61,7 +72,8 @@ def command(file: str, path: str | None, **options: Any) -> int:
     structure = decompose(load_mechanism(file))
     order = 2 if options["order"] is None else options["order"]
     motion = solve_motion_at(structure, _driver_values(structure, options), {**options, "order": order})
-    animation = animate(motion, **{key: options[key] for key in PASSED_ON})
+    shown = find_forces(motion, statics=False) if options["forces"] else motion
+    animation = animate(shown, **{key: options[key] for key in PASSED_ON})
     if path is None:
         put(animation.svg)
     else:

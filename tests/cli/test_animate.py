@@ -34,6 +34,13 @@ def test_stdout_has_what_python_makes(run: Run) -> None:
     assert found.stdout == motion.animate(paths="G", vectors="velocity", seconds=3).svg
 
 
+def test_forces_are_those_of_python(run: Run) -> None:
+    found = run("engine-gas-pressure", "--forces", "--at", "0:90:30")
+    forces = ck.force_analysis(ck.solve(ck.load("engine-gas-pressure"), {"crank": ck.deg([0, 30, 60, 90])}))
+    assert (found.exit_code, found.stdout) == (0, ck.animate(forces).svg)
+    assert run("six-bar", "--forces").exit_code == 2  # it has no units of forces
+
+
 def test_a_file_has_it_too(run: Run) -> None:
     found = run("six-bar", "--at", "0,120,240", "--size", "80", "--no-labels", "-o", "a.gif")
     assert (found.exit_code, found.stdout, found.stderr) == (0, "", "Wrote a.gif.\n")

@@ -61,7 +61,8 @@ class Page(HTMLParser):
     def handle_data(self, data: str) -> None:
         self.texts.append(data)
         if {"td", "th"} & set(self.open):
-            self.tables[-1][-1][-1] += data
+            # as it is read, so that tests take it for a number
+            self.tables[-1][-1][-1] += data.replace("−", "-")
         if self.open and self.open[-1] in ("h3", "h4", "h5"):
             self.headings.append(data)
 

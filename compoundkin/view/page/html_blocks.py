@@ -10,6 +10,7 @@ from compoundkin.view.page.html_tables import HtmlTable, Names, table_html
 from compoundkin.view.page.markup import element, lines, safe, screen_reader_text
 from compoundkin.view.page.mathml import UnknownLatex, mathml, with_formulas
 from compoundkin.view.report.report_data import (
+    ABOUT,
     Alert,
     FormulaBlock,
     Paragraph,
@@ -30,7 +31,7 @@ LEFT, RIGHT = f"text-align:left;{CELL}", f"text-align:right;{CELL}"
 CAPTION = "text-align:left;caption-side:top;font-weight:bold;padding:.5em 0"
 FITTED = "max-width:100%;height:auto;"
 # The section that stands in the head of the page, and the one whose steps are the groups.
-ABOUT, GROUPS = "about", "groups"
+GROUPS = "groups"
 # Sections whose numbers depend on the dimensions: a page with changed dimensions marks them.
 OF_DIMENSIONS = frozenset((
     "links", "circuits", "outputs", "performance", "checks", "published", "gaps", "forces", "force-checks", "centres",
@@ -45,7 +46,11 @@ def plain_sections(sections: Iterable[Section]) -> Iterator[str]:
     for section in sections:
         if section.title:
             yield element("h4", safe(section.title))
-        yield from map(plain_block, section.blocks)
+        for block in section.blocks:
+            if section.key == ABOUT and isinstance(block, Paragraph):
+                yield element("p", with_formulas(typeset(block.text)))
+            else:
+                yield plain_block(block)
 
 
 def plain_table(table: TableBlock, caption: str = "") -> str:
@@ -87,7 +92,7 @@ def plain_block(block: object) -> str:
         case Paragraph():
             return element("p", safe(typeset(block.text)))
         case FormulaBlock():
-            return element("pre", safe(typeset(block.text)))
+            return _formula(block) if block.latex else element("pre", safe(typeset(block.text)))
         case Alert():
             remedy = f" Remedy: {safe(block.remedy)}." if block.remedy else ""
             return element("p", element("strong", safe(typeset(block.text))) + remedy, role="note")

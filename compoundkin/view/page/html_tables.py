@@ -16,7 +16,7 @@ from compoundkin.model.attributes import typeset_unit
 from compoundkin.structure import Structure, roman
 from compoundkin.view.page.markup import breakable, element, lines, safe, screen_reader_text
 from compoundkin.view.report.report_data import Cell, Column, TableBlock
-from compoundkin.view.report.wording import UNIT_HEADS, column_texts, listed
+from compoundkin.view.report.wording import UNIT_HEADS, column_texts, listed, typeset
 from compoundkin.view.sketch.scene import link_groups
 from compoundkin.view.sketch.sketch_style import COLOURS
 from compoundkin.view.sketch.svg import link_names
@@ -149,7 +149,8 @@ def _heading(column: Column, shown: HtmlTable) -> str:
 
 def _body(shown: HtmlTable) -> str:
     table = shown.table
-    texts = [column_texts(column, [row[k] for row in table.rows], "\n") for k, column in enumerate(table.columns)]
+    plain = (column_texts(column, [row[k] for row in table.rows], "\n") for k, column in enumerate(table.columns))
+    texts = [[*map(typeset, column)] for column in plain]
     needed = None if table.shown is None else set(table.shown)
     rows = (_row(shown, k, [column[k] for column in texts], needed) for k in range(len(table.rows)))
     return element("tbody", lines(rows))

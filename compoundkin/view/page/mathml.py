@@ -9,15 +9,15 @@ Source: W3C, MathML Core.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator
 
 from compoundkin.view.page.markup import safe
+from compoundkin.view.report.wording import FUNCTIONS, formula_latex, formulas_in
 
 LETTERS = {r"\theta": "θ", r"\varphi": "φ", r"\partial": "∂"}
 SIGNS = {"-": "−", "+": "+", "=": "=", ",": ","}
 OTHER_SIGNS = {"/": "/", "·": "·", r"\prime": "′"}
-# Functions, whose names stand upright; dots over a letter.
-FUNCTIONS = {r"\sin": "sin", r"\cos": "cos", r"\tan": "tan", r"\cot": "cot"}
+# Dots over a letter.
 DOTS = {r"\dot": "˙", r"\ddot": "¨"}
 # What ends an entry and a row of a matrix.
 NEXT, ROW = "&", r"\\"
@@ -185,16 +185,6 @@ def _single_token(token: str) -> str:
 _BREAKS = tuple(f"<mo>{sign}</mo>" for sign in SIGNS.values())
 
 
-# Words, numbers, and what is between them in a sentence.
-_SYMBOL = re.compile(r"(theta|phi|[^\W\d_])(\d+)")
-_IN_SENTENCES = re.compile(r"(?:theta|phi|[^\W\d_])\d+|[^\W\d_]+(?:-[^\W\d_]+)*|\d+(?:\.\d+)?°?|\s+|.", re.DOTALL)
-# What is between two terms, and what a formula has at least one of.
-_BETWEEN, _TELLING = "=+-/^·", "=^"
-_ROOT, _ARTICLES = "sqrt", ("a", "A", "I")
-_GREEK = {"theta": r"\theta", "phi": r"\varphi"}
-_NAMED = {name.removeprefix("\\"): name for name in FUNCTIONS}
-
-
 def with_formulas(sentence: str, names: Collection[str] = ()) -> str:
     r"""Return a text as HTML, with the formulas in it as mathematics.
 
@@ -205,94 +195,13 @@ def with_formulas(sentence: str, names: Collection[str] = ()) -> str:
     >>> with_formulas("a = b, less than c").count("<math>"), with_formulas("x-axis, and/or 3 + 4 of them")
     (1, 'x-axis, and/or 3 + 4 of them')
     """
-    plain = re.sub(r"(?<=\d) degrees(?= [-+=/])", "°", re.sub(r"(?<=[-+=/] )(\d[\d.]*) degrees\b", r"\1°", sentence))
-    tokens = _IN_SENTENCES.findall(plain)
     parts: list[str] = []
-    k = 0
-    while k < len(tokens):
-        end = _end_of_formula(tokens, k, frozenset(names))
-        found = "".join(tokens[k:end]).strip()
-        if end > k and _is_formula(tokens[k:end]):
-            try:
-                parts.append(mathml(_as_latex(found), breaks=False))
-            except UnknownLatex:
-                parts.append(safe(found))
-            parts.append(" " * (tokens[end - 1].isspace()))
-            k = end
-        else:
-            # of a word of which a part would be a formula nothing is one
-            step = max(end, k + 1) if end > k and not tokens[k].isalpha() else k + 1
-            parts.append(safe("".join(tokens[k:step])))
-            k = step
+    for text, is_formula in formulas_in(sentence, names):
+        if not is_formula:
+            parts.append(safe(text))
+            continue
+        try:
+            parts.append(mathml(formula_latex(text), breaks=False))
+        except UnknownLatex:
+            parts.append(safe(text))
     return "".join(parts)
-
-
-def _is_formula(tokens: Sequence[str]) -> bool:
-    functions = any(one in (*_NAMED, _ROOT) for one in tokens)
-    return functions or any(one in _TELLING for one in tokens if not one.isspace())
-
-
-def _end_of_formula(tokens: Sequence[str], k: int, names: frozenset[str]) -> int:
-    """Return where terms and signs between them end that begin at a token; its own place where no term begins."""
-    end = _end_of_term(tokens, k, names)
-    while end > k:
-        after = _skipped(tokens, end)
-        if after >= len(tokens) or tokens[after] not in _BETWEEN:
-            break
-        further = _end_of_term(tokens, _skipped(tokens, after + 1), names, signed=True)
-        # a dash in a sentence, or an operator with nothing behind it
-        if further <= _skipped(tokens, after + 1):
-            break
-        end = further
-    return end
-
-
-def _skipped(tokens: Sequence[str], k: int) -> int:
-    while k < len(tokens) and tokens[k].isspace():
-        k += 1
-    return k
-
-
-def _end_of_term(tokens: Sequence[str], k: int, names: frozenset[str], signed: bool = False) -> int:
-    """Return where factors that stand beside each other end."""
-    begin = k
-    if signed and k < len(tokens) and tokens[k] == "-":
-        k = _skipped(tokens, k + 1)
-    end = begin
-    while k < len(tokens):
-        one = tokens[k]
-        if one == "(":
-            closes = _end_of_formula(tokens, k + 1, names)
-            if closes <= k + 1 or closes >= len(tokens) or tokens[closes] != ")":
-                break
-            k = closes + 1
-        elif one in (*_NAMED, _ROOT):
-            argument = _skipped(tokens, k + 1)
-            k = _end_of_term(tokens, argument, names)
-            if k <= argument:
-                break
-        elif one[0].isdigit() or one in names or _is_symbol(one) or (one[0].isalpha() and end == begin):
-            k += 1
-        else:
-            break
-        end, k = k, _skipped(tokens, k)
-        if one.isalpha() and len(one) > 1 and one not in names and one not in (*_NAMED, _ROOT):
-            break
-    return end
-
-
-def _is_symbol(token: str) -> bool:
-    return bool(_SYMBOL.fullmatch(token)) or (len(token) == 1 and token.isalpha() and token not in _ARTICLES)
-
-
-def _as_latex(formula: str) -> str:
-    """Return a formula of a sentence as LaTeX."""
-    found = re.sub(rf"\b{_ROOT}\(([^()]*)\)", r"\\sqrt{\1}", formula)
-    found = re.sub(r"\^(\w+)", r"^{\1}", found).replace("°", r"^\circ")
-    found = _SYMBOL.sub(lambda one: rf"{_GREEK.get(one[1], one[1])}_{{{one[2]}}}", found)
-    parts = re.split(r"(\\(?:sqrt|circ|theta|varphi)(?![a-z])|[^\W\d_]{2,}(?:-[^\W\d_]+)*)", found)
-    words = (
-        one if not one.strip("-").replace("-", "").isalpha() else _NAMED.get(one, rf"\text{{{one}}}") for one in parts
-    )
-    # factors that stand beside each other
-    return re.sub(r"(?<=[\w)}]) (?=[\w(\\])", r"\:", "".join(words))

@@ -16,7 +16,7 @@ from compoundkin.base.version import VERSION
 from compoundkin.files.saved_files import Savable
 from compoundkin.kinematics import Motion
 from compoundkin.structure import Structure
-from compoundkin.view.page.html_blocks import ABOUT, Blocks
+from compoundkin.view.page.html_blocks import Blocks
 from compoundkin.view.page.html_document import Document, asset, vendored_library
 from compoundkin.view.page.html_tables import names_of
 from compoundkin.view.page.live.compact_data import compact
@@ -25,7 +25,7 @@ from compoundkin.view.page.markup import data_script, element, safe
 from compoundkin.view.page.viewer import PANEL_KEY, PANEL_TITLE, Viewer, panel_section, viewer_of
 from compoundkin.view.report.outputs_section import outputs_at_poses, outputs_table
 from compoundkin.view.report.pose_sample import Sample
-from compoundkin.view.report.report_data import Outcome, Section, Subject, TableBlock
+from compoundkin.view.report.report_data import ABOUT, Outcome, Section, Subject, TableBlock
 from compoundkin.view.sketch import Picture, draw
 
 # Of more links than this no picture is legible, and drawing takes long.

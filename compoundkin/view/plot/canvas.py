@@ -122,9 +122,18 @@ def write_empty(axes: Any) -> None:
     axes.set_yticks([])
 
 
+# Inches for a number below an axis.
+TICK_ROOM = 0.65
+
+
 def plane_axes(axes: Any, x: str, y: str) -> None:
     """Draw the axes of a plane: equal scales."""
+    from matplotlib.ticker import MaxNLocator
+
     axes.set_aspect("equal", adjustable="datalim")
+    # as many ticks across as have room for numbers of a hundred thousand
+    width = float(axes.get_position().width * axes.figure.get_size_inches()[0])
+    axes.xaxis.set_major_locator(MaxNLocator(max(2, min(ACROSS, int(width / TICK_ROOM))), steps=(1, 2, 2.5, 5, 10)))
     axes.set_xlabel(x)
     axes.set_ylabel(y)
     axes.margins(0.1)

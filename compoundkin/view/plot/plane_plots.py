@@ -19,7 +19,7 @@ from compoundkin.base.arrays import Number, first_entry
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.forces import Forces, motion_of
 from compoundkin.kinematics import Motion
-from compoundkin.model.attributes import FORCE, LENGTH, PARTS, typeset_unit, unit_of
+from compoundkin.model.attributes import FORCE, LENGTH, OF_FORCES, PARTS, typeset_unit, unit_of
 from compoundkin.model.geometry import FRAME
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.canvas import PointLabel, value_text
@@ -34,6 +34,7 @@ from compoundkin.view.plot.plotted_rows import (
     plotted_quantity,
     rate_name,
 )
+from compoundkin.view.plot.quantity_plot import switches
 
 SIZE = (6.4, 5.8)
 # A letter of the mechanism, or a link and a place (complex or x, y) in its own frame.
@@ -282,7 +283,8 @@ def hodograph(
     shared = shared_curves_of(motion, designs, every)
     with plot_style.styled():
         figure, axes = canvas.panels(1, motion.mechanism.title if title is None else title, size or HODOGRAPH)
-        draw_curves(axes[0], shared, [one.values for one in vectors], [one.name for one in vectors])
+        forces = vectors[0].dimension in OF_FORCES
+        draw_curves(axes[0], shared, [one.values for one in vectors], [one.name for one in vectors], forces)
         axes[0].plot([0.0], [0.0], marker="+", markersize=11, color=plot_style.INK, linestyle="none", zorder=6)
         unit, names_ = typeset_unit(vectors[0].unit), ", ".join(one.name for one in vectors)
         canvas.plane_axes(axes[0], f"{names_}, x [{unit}]", f"y [{unit}]")
@@ -426,7 +428,7 @@ def bearing_loads(
         figure, axes = canvas.panels(1, text, size or (PANEL * len(panels), HEIGHT), columns=len(panels))
         unit = forces.units.force
         for one, (said, drawn) in zip(axes, panels, strict=True):
-            draw_curves(one, shared, drawn, [f"{name}.{FORCE}" for name in pairs])
+            draw_curves(one, shared, drawn, [f"{name}.{FORCE}" for name in pairs], switched=True)
             one.plot([0.0], [0.0], marker="+", markersize=11, color=plot_style.INK, linestyle="none", zorder=6)
             canvas.plane_axes(one, f"{', '.join(pairs)}: force, x [{unit}]", f"y [{unit}]")
             # above the legend, which stands where there is more than one curve
@@ -485,16 +487,24 @@ def shared_curves_of(motion: Motion, designs: Sequence[str], every: int | None) 
     return SharedCurves(x, events(motion), called, every or default, [])
 
 
-def draw_curve(axes: Any, shared: SharedCurves, d: int, z: Number, colour: Any, name: str) -> None:
-    """Draw one curve with an arrow, and rings next to limit positions. The curve is complex, pose by pose."""
-    axes.plot(z.real, z.imag, color=colour, label=name)
+def draw_curve(
+    axes: Any, shared: SharedCurves, d: int, z: Number, colour: Any, name: str, switched: bool = False
+) -> None:
+    """Draw one curve with an arrow, and rings next to limit positions. The curve is complex, pose by pose.
+
+    No line goes through where forces are `switched` on or off by loads that act one way only.
+    """
+    line = np.insert(z, np.flatnonzero(switches(z)) + 1, complex(np.nan, np.nan)) if switched else z
+    axes.plot(line.real, line.imag, color=colour, label=name)
     canvas.draw_arrow(axes, z.real, z.imag, colour)
     beside = shared.events.beside(d, len(z))
     canvas.draw_rings(axes, z.real[beside], z.imag[beside], colour)
 
 
-def draw_curves(axes: Any, shared: SharedCurves, drawn: Sequence[Number], names: Sequence[str]) -> None:
-    """Draw curves of all designs with their marks, in their colours.
+def draw_curves(
+    axes: Any, shared: SharedCurves, drawn: Sequence[Number], names: Sequence[str], switched: bool = False
+) -> None:
+    """Draw curves of all designs with their marks, in their colours, as `draw_curve` does.
 
     The colours are their own or, where there are several, of designs.
     """
@@ -502,7 +512,7 @@ def draw_curves(axes: Any, shared: SharedCurves, drawn: Sequence[Number], names:
     for k, (rows, name) in enumerate(zip(drawn, names, strict=True)):
         for d in range(shared.designs):
             colour = shades[k if shared.designs == 1 else d]
-            draw_curve(axes, shared, d, rows[d], colour, name)
+            draw_curve(axes, shared, d, rows[d], colour, name, switched)
             draw_marks(axes, shared, d, rows[d], colour, shared.designs == len(drawn) == 1)
 
 

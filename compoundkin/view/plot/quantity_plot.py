@@ -492,11 +492,22 @@ def _switches(curve: Plotted, up: Number) -> Number:
     word = curve.name.removesuffix(f".{LENGTH}").rpartition(".")[2]
     if word == FLANK:
         return steps > 0.0
-    if curve.dimension not in OF_FORCES or len(steps) < 3:
+    return switches(up) if curve.dimension in OF_FORCES else np.zeros(len(steps), dtype=bool)
+
+
+def switches(values: Number) -> Number:
+    """Return between which places the values of a force, real or vectors as complex numbers, change suddenly.
+
+    >>> switches(np.array([0.0, 0.1, 0.2, 9.0, 9.1])).tolist()
+    [False, False, True, False]
+    """
+    steps = np.nan_to_num(np.abs(np.diff(values)))
+    if len(steps) < 3:
         return np.zeros(len(steps), dtype=bool)
     beside = np.maximum(np.append(steps[1:], steps[-2]), np.append(steps[1], steps[:-1]))
-    known = up[np.isfinite(up)]
-    return (steps > SUDDEN * beside) & (steps > LARGE * float(np.ptp(known)))
+    known = values[np.isfinite(values)]
+    extent = float(np.hypot(np.ptp(known.real), np.ptp(known.imag))) if len(known) else 0.0
+    return (steps > SUDDEN * beside) & (steps > LARGE * extent)
 
 
 # Curves of fewer poses than these are solved between them, so that they are smooth; many designs together no more often

@@ -14,6 +14,9 @@ from compoundkin.structure import Structure
 Subject: TypeAlias = Structure | Motion
 Cell: TypeAlias = str | int | float | bool | tuple[float, ...] | None
 
+# The section whose sentences people have written of a mechanism: they have formulas.
+ABOUT = "about"
+
 # How the cells of a column are written.
 #   text    words, aligned left
 #   fixed   numbers, all with the same decimals: six digits for the largest

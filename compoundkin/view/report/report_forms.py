@@ -16,6 +16,7 @@ from compoundkin.base.display import DisplaysHtml
 from compoundkin.base.suffixes import Kind
 from compoundkin.files.saved_files import Savable
 from compoundkin.view.report.report_data import (
+    ABOUT,
     Alert,
     Cell,
     FormulaBlock,
@@ -28,7 +29,7 @@ from compoundkin.view.report.report_data import (
     not_a_block,
     summarised,
 )
-from compoundkin.view.report.wording import column_texts, title_with_unit, typeset
+from compoundkin.view.report.wording import column_texts, formula_latex, formulas_in, title_with_unit, typeset
 
 if TYPE_CHECKING:
     from compoundkin.view.page import Page
@@ -257,7 +258,21 @@ def _section(section: Section) -> Iterator[str]:
     if section.title:
         yield rf"\subsection*{{{plain_latex(section.title)}}}"
     for block in section.blocks:
-        yield _block(block)
+        # only what people have written of a mechanism has formulas in sentences
+        yield latex_sentence(block.text) if section.key == ABOUT and isinstance(block, Paragraph) else _block(block)
+
+
+def latex_sentence(text: str) -> str:
+    r"""Return a sentence with its formulas as mathematics.
+
+    >>> print(latex_sentence("It rises by r sin(x) & more."))
+    It rises by $r\:\sin(x)$ \& more.
+    """
+    return "".join(_dollars(formula_latex(part)) if found else plain_latex(part) for part, found in formulas_in(text))
+
+
+def _dollars(latex: str) -> str:
+    return f"${latex}$".replace("·", r"\cdot ")
 
 
 def _block(block: object) -> str:

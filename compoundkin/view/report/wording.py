@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from math import floor, isfinite, log10
 from typing import TYPE_CHECKING, Any
 
@@ -21,8 +21,11 @@ SIGNIFICANT = 6
 # Outside of these, numbers are written with exponents.
 LARGEST, SMALLEST = 1e7, 1e-3
 MISSING = "-"
-# Powers of seconds, and numbers that are multiplied; names may have anything else.
-_TYPESET = re.compile(r"(?<=/s)\^[23]\b|(?<=\d) \* (?=\d)")
+# Powers of seconds, numbers that are multiplied, signs of numbers and between them; names may have anything else.
+_TYPESET = re.compile(
+    r"(?<=/s)\^[23]\b|(?<=\d) \* (?=\d)|(?<![\w.)\]-])-(?=\.?\d)|(?<=\de)-(?=\d)|(?<=[\d)] )-(?= [\d(])"
+)
+MINUS = "−"
 # The heads of columns that have a unit in each row.
 UNIT_HEADS = ("unit", "speed in")
 _KINDS = ("free", "singular", "binary", "ternary", "quaternary", "quinary", "senary")
@@ -58,12 +61,12 @@ def number_text(value: float) -> str:
 
 
 def typeset(text: str) -> str:
-    """Return a sentence or formula as pages and Markdown have it. Terminals and data have it plain.
+    """Return a sentence, formula or number as pages and Markdown have it. Terminals and data have it plain.
 
-    >>> typeset("3 (6 - 1) - 2 * 7 = 1"), typeset("9.81 m/s^2 at x^2")
-    ('3 (6 - 1) - 2·7 = 1', '9.81 m/s² at x^2')
+    >>> typeset("3 (6 - 1) - 2 * 7 = 1"), typeset("9.81 m/s^2 at x^2"), typeset("-1.5e-07, a four-bar of 2-3 mm")
+    ('3 (6 − 1) − 2·7 = 1', '9.81 m/s² at x^2', '−1.5e−07, a four-bar of 2-3 mm')
     """
-    return _TYPESET.sub(lambda found: SUPERSCRIPTS.get(found[0], "·"), text)
+    return _TYPESET.sub(lambda found: MINUS if found[0] == "-" else SUPERSCRIPTS.get(found[0], "·"), text)
 
 
 def brief(value: float) -> str:
@@ -210,3 +213,117 @@ def objective_text(found: Optimum, value: float) -> str:
     """Write an objective with its unit."""
     shown = objective_quantity(found, value)
     return with_unit(number_text(float(shown.values)), shown.unit)
+
+
+# --- formulas in sentences ------------------------------------------------------------------------------------------
+
+
+# Functions, whose names stand upright.
+FUNCTIONS = {r"\sin": "sin", r"\cos": "cos", r"\tan": "tan", r"\cot": "cot"}
+# Words, numbers, and what is between them in a sentence.
+_SYMBOL = re.compile(r"(theta|phi|[^\W\d_])(\d+)")
+_IN_SENTENCES = re.compile(r"(?:theta|phi|[^\W\d_])\d+|[^\W\d_]+(?:-[^\W\d_]+)*|\d+(?:\.\d+)?°?|\s+|.", re.DOTALL)
+# What is between two terms, and what a formula has at least one of.
+_BETWEEN, _TELLING = "=+-−/^·", "=^"
+_MINUS = "-−"
+_ROOT, _ARTICLES = "sqrt", ("a", "A", "I")
+_GREEK = {"theta": r"\theta", "phi": r"\varphi"}
+_NAMED = {name.removeprefix("\\"): name for name in FUNCTIONS}
+
+
+def formulas_in(sentence: str, names: Collection[str] = ()) -> Iterator[tuple[str, bool]]:
+    """Yield the parts of a sentence in order, and whether each is a formula, as of `with_formulas`.
+
+    >>> [*formulas_in("It rises by sin(x), not more.")]
+    [('It rises by ', False), ('sin(x)', True), (', not more.', False)]
+    """
+    plain = re.sub(r"(?<=\d) degrees(?= [-+−=/])", "°", re.sub(r"(?<=[-+−=/] )(\d[\d.]*) degrees\b", r"\1°", sentence))
+    tokens, before = _IN_SENTENCES.findall(plain), ""
+    k = 0
+    while k < len(tokens):
+        end = _end_of_formula(tokens, k, frozenset(names))
+        found = "".join(tokens[k:end]).strip()
+        if end > k and _is_formula(tokens[k:end]):
+            if before:
+                yield before, False
+            yield found, True
+            before = " " * tokens[end - 1].isspace()
+            k = end
+        else:
+            # of a word of which a part would be a formula nothing is one
+            step = max(end, k + 1) if end > k and not tokens[k].isalpha() else k + 1
+            before += "".join(tokens[k:step])
+            k = step
+    if before:
+        yield before, False
+
+
+def _is_formula(tokens: Sequence[str]) -> bool:
+    functions = any(one in (*_NAMED, _ROOT) for one in tokens)
+    return functions or any(one in _TELLING for one in tokens if not one.isspace())
+
+
+def _end_of_formula(tokens: Sequence[str], k: int, names: frozenset[str]) -> int:
+    """Return where terms and signs between them end that begin at a token; its own place where no term begins."""
+    end = _end_of_term(tokens, k, names)
+    while end > k:
+        after = _skipped(tokens, end)
+        if after >= len(tokens) or tokens[after] not in _BETWEEN:
+            break
+        further = _end_of_term(tokens, _skipped(tokens, after + 1), names, signed=True)
+        # a dash in a sentence, or an operator with nothing behind it
+        if further <= _skipped(tokens, after + 1):
+            break
+        end = further
+    return end
+
+
+def _skipped(tokens: Sequence[str], k: int) -> int:
+    while k < len(tokens) and tokens[k].isspace():
+        k += 1
+    return k
+
+
+def _end_of_term(tokens: Sequence[str], k: int, names: frozenset[str], signed: bool = False) -> int:
+    """Return where factors that stand beside each other end."""
+    begin = k
+    if signed and k < len(tokens) and tokens[k] in _MINUS:
+        k = _skipped(tokens, k + 1)
+    end = begin
+    while k < len(tokens):
+        one = tokens[k]
+        if one == "(":
+            closes = _end_of_formula(tokens, k + 1, names)
+            if closes <= k + 1 or closes >= len(tokens) or tokens[closes] != ")":
+                break
+            k = closes + 1
+        elif one in (*_NAMED, _ROOT):
+            argument = _skipped(tokens, k + 1)
+            k = _end_of_term(tokens, argument, names)
+            if k <= argument:
+                break
+        elif one[0].isdigit() or one in names or _is_symbol(one) or (one[0].isalpha() and end == begin):
+            k += 1
+        else:
+            break
+        end, k = k, _skipped(tokens, k)
+        if one.isalpha() and len(one) > 1 and one not in names and one not in (*_NAMED, _ROOT):
+            break
+    return end
+
+
+def _is_symbol(token: str) -> bool:
+    return bool(_SYMBOL.fullmatch(token)) or (len(token) == 1 and token.isalpha() and token not in _ARTICLES)
+
+
+def formula_latex(formula: str) -> str:
+    """Return a formula of a sentence as LaTeX."""
+    found = re.sub(rf"\b{_ROOT}\(([^()]*)\)", r"\\sqrt{\1}", formula.replace("−", "-"))
+    found = re.sub(r"\^(\w+)", r"^{\1}", found).replace("°", r"^\circ")
+    found = _SYMBOL.sub(lambda one: rf"{_GREEK.get(one[1], one[1])}_{{{one[2]}}}", found)
+    parts = re.split(r"(\\(?:sqrt|circ|theta|varphi)(?![a-z])|[^\W\d_]{2,}(?:-[^\W\d_]+)*)", found)
+    words = (
+        one if not one.strip("-").replace("-", "").isalpha() else _NAMED.get(one, rf"\text{{{one}}}") for one in parts
+    )
+    # factors that stand beside each other
+    return re.sub(r"(?<=[\w)}]) (?=[\w(\\])", r"\:", "".join(words))

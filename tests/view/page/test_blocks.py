@@ -142,20 +142,20 @@ def _holds(table: TableBlock, rows: list[list[str]], whole: bool) -> None:
     """The rows are those of the table; with poses between them where it has only every third or so."""
     assert len(rows) >= len(table.rows) if whole else len(rows) == len(table.rows)
     for k, column in enumerate(table.columns):
-        wanted = column_texts(column, [row[k] for row in table.rows], "")
+        wanted = column_texts(column, [row[k] for row in table.rows], "\n")
         shown = [row[k].removeprefix("✓ ").removeprefix("✗ ") for row in rows]
         if whole:
             # more rows may have more digits: the numbers are the same
             assert {_number(text) for text in wanted} <= {_number(text) for text in shown}
         else:
-            # the page raises the powers of units, and has the sign of degrees
-            signed = ["°" if text == "deg" else typeset_unit(text) for text in wanted]
-            assert shown == [" ".join(text.split()) for text in signed]
+            # the page raises the powers of units, and has the signs of degrees and minus
+            signed = ["°" if text == "deg" else typeset_unit(typeset(text)) for text in wanted]
+            assert shown == [" ".join(text.replace("\n", "").split()) for text in signed]
 
 
 def _number(text: str) -> float | str:
     try:
-        return float(f"{float(text):.3g}")
+        return float(f"{float(text.replace('−', '-')):.3g}")
     except ValueError:
         return text
 
@@ -223,7 +223,7 @@ def test_numbers_are_sorted_and_copied_with_every_digit() -> None:
     section = Section("s", "S", (TableBlock(columns, rows),))
     html = Report("R", (section,), Outcome(True)).html()
     assert f'data-sort="{value!r}">0.333333<' in html
-    assert f'data-copy="1.25, {-2.0 / 3.0!r}">1.25<br>-0.666667<' in html
+    assert f'data-copy="1.25, {-2.0 / 3.0!r}">1.25<br>−0.666667<' in html
     assert '<td class="number" data-sort="">-</td>' in html
     assert "✓</span> pass" in html
     assert "✗</span> FAIL" in html

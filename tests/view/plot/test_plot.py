@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import warnings
@@ -14,6 +15,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.errors import InvalidInput, UnknownName
+from tests import catalog
 from tests.view.loaded import MASS, REACH, SPEED, crank_forces
 
 pytest.importorskip("matplotlib")
@@ -21,8 +23,10 @@ pytest.importorskip("matplotlib")
 from compoundkin.analysis.coupler import centrodes as solved_centrodes
 from compoundkin.files import load
 from compoundkin.view import plot
+from compoundkin.view.plot.quantity_plot import LARGE, SUDDEN
 
 ROOT = Path(__file__).parents[3]
+CURVES = ROOT / "compoundkin/view/page/assets/curves.js"
 # where coupler and rocker of the catalog's triple rocker are in line, by the cosine rule
 LIMIT = np.rad2deg(np.arccos((4**2 + 7**2 - 8**2) / (2 * 4 * 7)))
 
@@ -462,6 +466,22 @@ def test_several_pairs_are_in_one_panel_and_wrong_names_are_said() -> None:
         ck.plots.bearing_loads(crank_forces())
     with pytest.raises(UnknownName, match="known"):
         ck.plots.bearing_loads(crank_forces().motion, "Z")
+
+
+def test_no_line_of_a_bearing_goes_through_where_a_load_sets_in() -> None:
+    forces = ck.force_analysis(catalog.motion("jaw-crusher-loaded"))
+    frame = ck.plots.bearing_loads(forces, "D").figure.axes[0]
+    line = frame.lines[0].get_xydata()
+    breaks = np.flatnonzero(np.isnan(line[:, 0]))
+    # the stone presses while the jaw closes: it sets in once, and ends once
+    assert len(breaks) == 2
+    assert len(line) == len(forces.motion.drives["eccentric"].value) + 2
+    assert all(np.hypot(*(line[k + 1] - line[k - 1])) > 1e5 for k in breaks)
+
+
+def test_pages_and_drawn_plots_part_the_curves_of_forces_alike() -> None:
+    told = dict(re.findall(r"(SUDDEN|LARGE) = ([\d.]+)", CURVES.read_text("utf-8")))
+    assert {name: float(value) for name, value in told.items()} == {"SUDDEN": SUDDEN, "LARGE": LARGE}
 
 
 def test_efforts_have_their_mean() -> None:

@@ -101,7 +101,7 @@ def test_markdown_tables_are_well_formed(broken: ck.results.Motion) -> None:
 def test_formulas_and_units_are_set_alike_but_for_plain_text(six_bar: ck.results.Motion) -> None:
     made = report(six_bar)
     for form in (made.markdown(), re.sub(r"(?s)<script.*?</script>", "", made.html())):
-        assert "3 (6 - 1) - 2·7 = 1" in form
+        assert "3 (6 − 1) − 2·7 = 1" in form
         assert "mm/s²" in form
         assert not re.search(r"/s\^[23]|\d \* \d", form)
     assert "2 * 7" in made.text()

@@ -248,6 +248,8 @@ TRIED, SHORTEST = np.array([-1.0 + 1e-9, -0.75, -0.25, 0.25, 0.75, 1.0 - 1e-9]),
 def profile_data(curve: Curve) -> dict[str, Any]:
     """Return a profile as polynomials for a script, between the breaks of its derivatives.
 
+    >>> from compoundkin.base.curves import Analytic
+    >>> from compoundkin.base.series import Series
     >>> profile_data(Analytic(Series.turn, 0.0, 2.0 * np.pi, closed=True))["closed"]
     True
     """

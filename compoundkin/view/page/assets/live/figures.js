@@ -38,8 +38,9 @@
   const first = new Map();
   const put = (cell, text, digits) => {
     if (!first.has(cell)) first.set(cell, [cell.textContent, cell.dataset.sort]);
-    if (cell.textContent !== text) cell.textContent = text;
-    if (digits === text || digits === undefined) delete cell.dataset.sort;
+    const shown = text === NOTHING ? text : text.replace(/^-|(?<=\de)-/g, "−");
+    if (cell.textContent !== shown) cell.textContent = shown;
+    if (digits === shown || digits === undefined) delete cell.dataset.sort;
     else cell.dataset.sort = digits;
   };
   const tell = (cell, value) => {
