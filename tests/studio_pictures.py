@@ -152,7 +152,7 @@ def gears_and_cam() -> None:
         seen.press((-160, 60), "g")
         seen.press((80, 60), "g")
         seen.view.mouse.click(*seen.at((-160, 60)))
-        seen.menu((80, 60)).get_by_role("menuitem", name="Gears at A and C").click()
+        seen.menu((80, 60)).get_by_role("menuitem", name="Gears or a belt at A and C").click()
         form = seen.view.locator("dialog")
         form.get_by_label("On, at A").select_option("bar1")
         form.get_by_label("On, at C").select_option("bar2")

@@ -188,31 +188,73 @@ def _wheel_at(sheet: EditedDocument, letter: str, word: str, link: Any, carrier:
     return name
 
 
-def _gear(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
-    """Put two gears at two points of one link, by their teeth: on links that turn there, or wheels of their own."""
+def _wheels(sheet: EditedDocument, edit: Edit, array: str) -> dict[str, Any]:
+    """Return the table of two wheels at two points of one link: on links that turn there, or wheels of their own."""
     one, two = word_in(edit, "point"), word_in(edit, "with")
     if one == two:
-        raise refused("two gears have two axes", "choose two points")
+        raise refused("two wheels have two axes", "choose two points")
     both = [name for name in sheet.carriers(one) if name in sheet.carriers(two)]
     if not both:
         raise refused(f"no link carries both {one} and {two}", "ground both, or choose two points of one bar")
+    first = _wheel_at(sheet, one, WHEEL, edit.get("first"), both[0])
+    second = _wheel_at(sheet, two, WHEEL, edit.get("second"), both[0])
+    for name, _, other in sheet.tables():
+        if name == array and {other.get("first"), other.get("second")} == {first, second}:
+            raise refused(f"{first} and {second} are joined so already", "delete that pair first")
+    return {"first": first, "second": second} | ({} if both[0] == FRAME else {"carrier": both[0]})
+
+
+def _gear(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
+    """Put two gears at two points of one link, by their teeth."""
     teeth = edit.get("teeth")
     if not (isinstance(teeth, list) and len(teeth) == 2 and all(isinstance(n, int) and 0 < n < 1e6 for n in teeth)):
         raise refused(f"{teeth!r} are no numbers of teeth", "give two whole numbers")
-    first = _wheel_at(sheet, one, WHEEL, edit.get("first"), both[0])
-    second = _wheel_at(sheet, two, WHEEL, edit.get("second"), both[0])
-    table: dict[str, Any] = (
-        {"first": first, "second": second} | ({} if both[0] == FRAME else {"carrier": both[0]}) | {"teeth": teeth}
-    )
-    for array, _, other in sheet.tables():
-        if array == "gears" and {other.get("first"), other.get("second")} == {first, second}:
-            raise refused(f"{first} and {second} are in mesh already", "delete that gear pair first")
+    table = _wheels(sheet, edit, "gears") | {"teeth": teeth}
     if edit.get("internal"):
         if teeth[0] >= teeth[1]:
             raise refused("a ring has more teeth than the gear in it", "choose the gear first, and more teeth second")
         table["internal"] = True
     sheet.document.setdefault("gears", []).append(table)
-    return {"link": first}
+    return {"link": table["first"]}
+
+
+def _belt(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
+    """Lead a belt around two pulleys at two points of one link, by their radii; open or crossed."""
+    radii = edit.get("radii")
+    if not (isinstance(radii, list) and len(radii) == 2):
+        raise refused(f"{radii!r} are no radii", "give two")
+    sizes = [_positive({"radii": one}, "radii") for one in radii]
+    if not all(sizes):
+        raise refused("a pulley has a radius", "give two numbers above 0")
+    table = _wheels(sheet, edit, "belts") | {"radii": [sheet.number(one) for one in sizes]}
+    apart = abs(sheet.place(word_in(edit, "point")) - sheet.place(word_in(edit, "with")))
+    least = sum(sizes) if edit.get("crossed") else abs(sizes[0] - sizes[1])
+    if apart <= least:
+        raise refused("the pulleys lie in each other", f"the axes are {sheet.number(apart)} apart")
+    sheet.document.setdefault("belts", []).append(table | ({"crossed": True} if edit.get("crossed") else {}))
+    return {"link": table["first"]}
+
+
+def _rack(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
+    """Let a pinion at a fixed point roll on what slides at another: the rack's pitch line is that of its guide."""
+    axis, letter = word_in(edit, "point"), word_in(edit, "with")
+    if FRAME not in sheet.carriers(axis):
+        raise refused(f"{axis} is not fixed", "ground it first (key G)")
+    rack = next((name for name in sheet.carriers(letter) if name != FRAME and sheet.is_block(name)), None)
+    slide = next((t for name, _, t in sheet.tables() if name == "slides" and t.get("link") == rack), None)
+    if rack is None or slide is None or slide.get("on", FRAME) != FRAME:
+        raise refused(f"{letter} does not slide on the frame", "let it slide first (key S)")
+    along = direction_of(sheet, slide)
+    away = ((sheet.place(axis) - sheet.place(letter)) * along.conjugate()).imag
+    if abs(away) <= 1e-9 * sheet.drawing.size:
+        raise refused(f"{axis} is on the guide of {letter}", "a pinion has a radius: move one of them")
+    angle = degrees(cmath.phase(along / sheet.drawing.poses.get(rack, (0j, 1 + 0j))[1]))
+    pinion = _wheel_at(sheet, axis, WHEEL, edit.get("pinion"), FRAME)
+    table: dict[str, Any] = {"rack": rack, "pinion": pinion, "at": axis, "through": letter}
+    table |= {"radius": sheet.number(abs(away))} | ({"side": -1} if away < 0 else {})
+    table |= {"angle": sheet.number(angle)} if round(angle, DIGITS) else {}
+    sheet.document.setdefault("racks", []).append(table)
+    return {"link": pinion}
 
 
 def _cam(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
@@ -622,6 +664,8 @@ EDITS: Mapping[str, Callable[[EditedDocument, Edit], dict[str, Any]]] = MappingP
         "turn": _turn,
         "cylinder": _cylinder,
         "gear": _gear,
+        "belt": _belt,
+        "rack": _rack,
         "cam": _cam,
         "delete": _delete,
         "call": _call,

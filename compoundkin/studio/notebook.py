@@ -107,6 +107,8 @@ def bundled() -> str:
     style = page_palette() + (ASSETS / "studio.css").read_text(encoding="utf-8")
     style = re.sub(r":root((?:\[[^\]]*\]|:not\([^)]*\))+)", r":host(\1)", style).replace(":root", ":host")
     style += f".studio{{height:{HEIGHT}px!important;min-height:0}}.theme{{display:none}}"
+    # in a narrow cell the drawing is seen whole with its driver, the rest is scrolled to
+    style += "@container (max-width:52rem){#canvas{height:23rem}}"
     modules: dict[str, str] = {}
     _add(MODULE, modules)
     constants = f"const STYLE = {json.dumps(style)}, MARKUP = {json.dumps(markup)}, modules = {{}};\n"

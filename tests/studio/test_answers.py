@@ -443,13 +443,54 @@ def test_gears_on_fixed_points_turn_as_their_teeth() -> None:
     np.testing.assert_allclose(np.diff(motion.links["bar2"].angle), -np.deg2rad(15), atol=1e-9)
     (pair,) = structure(text)["pairs"]
     assert [shape["radius"] for shape in pair["shapes"]] == pytest.approx([10, 20])
-    assert "in mesh already" in refused(
+    assert "are joined so already" in refused(
         text, do="gear", point="A", **{"with": "C"}, teeth=[1, 2], first="bar1", second="bar2"
     )
     assert "no numbers of teeth" in refused(text, do="gear", point="A", **{"with": "C"}, teeth=[1.5, 2])
 
 
 LIFT = {"radius": 40, "roller": 10, "rise": 30, "over": 120, "dwell": 60, "back": 120}
+
+
+def test_a_belt_turns_its_pulleys_as_their_radii() -> None:
+    """Open the same way round, crossed the other."""
+    bars = (
+        {"do": "bar", "from": {"at": [0, 0]}, "to": {"at": [20, 10]}},
+        {"do": "bar", "from": {"at": [100, 0]}, "to": {"at": [110, 30]}},
+        {"do": "ground", "point": "A"},
+        {"do": "ground", "point": "C"},
+    )
+    belt = {"do": "belt", "point": "A", "with": "C", "radii": [20, 40], "first": "bar1", "second": "bar2"}
+    for crossed, sign in ((False, 1), (True, -1)):
+        text = edited(START, *bars, {**belt, "crossed": crossed}, {"do": "driver", "point": "A"})
+        motion = ck.solve(loads(text), {"bar1": [0.2, 0.6]}, order=0)
+        assert np.diff(np.ravel(motion.links["bar2"].angle)) == pytest.approx([0.4 * sign * 20 / 40])
+    on = edited(START, *bars)
+    assert "lie in each other" in refused(on, **{**belt, "radii": [20, 140]})
+    assert "has a radius" in refused(on, **{**belt, "radii": [0, 40]})
+    assert "are joined so already" in refused(edited(on, belt), **belt)
+
+
+def test_a_pinion_pulls_its_rack_by_its_radius() -> None:
+    """The rack goes along its guide as far as the pinion rolls."""
+    text = edited(
+        START,
+        {"do": "bar", "from": {"at": [0, 30]}, "to": {"at": [40, 60]}},
+        {"do": "ground", "point": "A"},
+        {"do": "bar", "from": {"at": [0, 0]}, "to": {"at": [60, -40]}},
+        {"do": "bar", "from": {"point": "D"}, "to": {"at": [120, 0]}},
+        {"do": "ground", "point": "E"},
+    )
+    rack = {"do": "rack", "point": "A", "with": "C", "pinion": "bar1"}
+    assert "does not slide on the frame" in refused(text, **rack)
+    text = edited(text, {"do": "slide", "point": "C", "angle": 20}, rack, {"do": "driver", "point": "A"})
+    radius = 30 * np.cos(np.deg2rad(20))
+    motion = ck.solve(loads(text), {"bar1": np.deg2rad([30, 35, 40])}, order=0)
+    gone = np.diff(np.ravel(motion.points["C"].position))
+    np.testing.assert_allclose(gone, np.deg2rad(5) * radius * np.exp(1j * np.deg2rad(20)), rtol=1e-5)
+    assert "is on the guide" in refused(
+        edited(text, {"do": "delete", "pair": "block1/bar1"}, {"do": "move", "point": "A", "to": [0, 0]}), **rack
+    )
 
 
 def test_a_cam_lifts_a_slide_and_swings_a_bar_by_its_program() -> None:

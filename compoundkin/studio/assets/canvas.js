@@ -7,6 +7,36 @@ const SIDES = [-1, -3, 0, 4, -2, 1, 3, 2].map((k) => (k * Math.PI) / 4), LETTER 
 // What is snapped to is so near, in pixels; two of them where they cross, so near.
 const NEAR = 6, NEAR_CROSSING = 10;
 const AWAY = 28, GUIDE = 70;
+// Layers that are written when what is in them changes; all others at each picture.
+const KEPT = ["below", "above"];
+
+// A layer of the drawing. Each picture tells all its elements in order; those of the last one are used again.
+class Layer {
+  constructor(name, svg) {
+    this.root = made("g", { class: `layer-${name}` }, svg);
+    this.held = [];
+    this.used = 0;
+  }
+
+  begin() { this.used = 0; }
+
+  put(name, attributes, text) {
+    let one = this.held[this.used];
+    if (one?.name !== name) {
+      const node = made(name, {});
+      if (one) one.node.replaceWith(node);
+      else this.root.append(node);
+      one = this.held[this.used] = { name, node, attributes: {}, text: "" };
+    }
+    this.used += 1;
+    for (const key in one.attributes) if (!(key in attributes)) one.node.removeAttribute(key);
+    for (const key in attributes) if (one.attributes[key] !== attributes[key]) one.node.setAttribute(key, attributes[key]);
+    if (text !== undefined && text !== one.text) one.node.textContent = one.text = text;
+    one.attributes = attributes;
+  }
+
+  end() { for (const { node } of this.held.splice(this.used)) node.remove(); }
+}
 
 const made = (name, attributes, parent) => {
   const node = document.createElementNS(SVG, name);
@@ -68,7 +98,7 @@ export class Canvas {
     this.sides = new Map();
     this.photo = null;
     this.layers = ["below", "traces", "guides", "shapes", "links", "marks", "pins", "letters", "above"];
-    for (const name of this.layers) this[name] = made("g", { class: `layer-${name}` }, svg);
+    for (const name of this.layers) this[name] = KEPT.includes(name) ? made("g", { class: `layer-${name}` }, svg) : new Layer(name, svg);
     // who changes what is drawn before it is, and who draws above it
     this.before = [];
     this.after = [];
@@ -291,9 +321,14 @@ export class Canvas {
   }
 
   #draw() {
-    for (const name of this.layers) if (!["above", "below"].includes(name)) this[name].replaceChildren();
+    const layers = this.layers.filter((name) => !KEPT.includes(name)).map((name) => this[name]);
+    for (const one of layers) one.begin();
     this.#photograph();
-    if (!this.structure) return;
+    if (this.structure) this.#mechanism();
+    for (const one of layers) one.end();
+  }
+
+  #mechanism() {
     const { links, pins, pairs, faults } = this.structure;
     const wrong = new Set(faults.filter((one) => one.kind === "over").flatMap((one) => one.links));
     this.#traces();
@@ -306,7 +341,7 @@ export class Canvas {
         const classes = `link${colour(link.colour)}${link.is_aside ? " aside" : ""}${corners.length > 2 ? " plate" : ""}`;
         const isOver = this.over?.link === link.name || this.chosen?.link === link.name;
         const path = `M${corners.map((one) => one.map((n) => n.toFixed(2)).join(" ")).join("L")}${corners.length > 2 ? "Z" : ""}`;
-        made("path", { d: path, class: `${classes}${isOver ? " over" : ""}${wrong.has(link.name) ? " bad" : ""}`, "data-link": link.name }, this.links);
+        this.links.put("path", { d: path, class: `${classes}${isOver ? " over" : ""}${wrong.has(link.name) ? " bad" : ""}`, "data-link": link.name });
       }
     }
     this.#drives();
@@ -314,14 +349,14 @@ export class Canvas {
       const at = this.at(letter);
       if (!at) continue;
       const state = `${this.picked.has(letter) ? " picked" : ""}${this.over?.point === letter ? " over" : ""}${this.chosen?.point === letter ? " chosen" : ""}`;
-      made("circle", { cx: at[0], cy: at[1], r: pins[letter] ? 5.5 : 4, class: `pin${pins[letter] ? "" : " end"}${state}`, "data-point": letter }, this.pins);
+      this.pins.put("circle", { cx: at[0], cy: at[1], r: pins[letter] ? 5.5 : 4, class: `pin${pins[letter] ? "" : " end"}${state}`, "data-point": letter });
       const side = this.#side(letter, at), x = at[0] + LETTER * Math.cos(side), y = at[1] + LETTER * Math.sin(side) + 5;
-      made("text", { x, y, "text-anchor": "middle" }, this.letters).textContent = letter;
+      this.letters.put("text", { x, y, "text-anchor": "middle" }, letter);
     }
     this.#locks();
     const { drawn, turned } = this;
-    if (drawn) made("rect", { x: drawn.at[0] - 6, y: drawn.at[1] - 6, width: 12, height: 12, class: "grip" }, this.letters);
-    if (turned) made("circle", { cx: turned.at[0], cy: turned.at[1], r: 7, class: "grip" }, this.letters);
+    if (drawn) this.letters.put("rect", { x: drawn.at[0] - 6, y: drawn.at[1] - 6, width: 12, height: 12, class: "grip" });
+    if (turned) this.letters.put("circle", { cx: turned.at[0], cy: turned.at[1], r: 7, class: "grip" });
   }
 
   // the direction from a point to its letter: no bar and no ground is drawn there while there is another
@@ -361,10 +396,10 @@ export class Canvas {
     for (const { what, points } of this.locks) {
       const places = points.map((one) => this.at(one)), [a, b] = places;
       if (places.some((one) => !one)) continue;
-      if (what === "point") { made("path", { d: `M${a[0] - 9} ${a[1] - 9}h18v18h-18Z`, class: "lock" }, this.marks); continue; }
+      if (what === "point") { this.marks.put("path", { d: `M${a[0] - 9} ${a[1] - 9}h18v18h-18Z`, class: "lock" }); continue; }
       const [x, y] = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], [u, v] = unit(a, b), [p, q] = [-v * 9, u * 9];
       const tick = (by) => `M${x + by * u - p} ${y + by * v - q}L${x + by * u + p} ${y + by * v + q}`;
-      made("path", { d: what === "length" ? tick(-3) + tick(3) : `M${x - 9} ${y}a9 9 0 1 0 18 0a9 9 0 1 0 -18 0`, class: "lock" }, this.marks);
+      this.marks.put("path", { d: what === "length" ? tick(-3) + tick(3) : `M${x - 9} ${y}a9 9 0 1 0 18 0a9 9 0 1 0 -18 0`, class: "lock" });
     }
   }
 
@@ -386,20 +421,20 @@ export class Canvas {
     const style = `shape${colour(this.link(shape.link)?.colour)}`;
     if (shape.line) {
       const path = this.#outline(shape).map((one) => one.map((n) => n.toFixed(2)).join(" ")).join("L");
-      made("path", { d: `M${path}${shape.is_closed ? "Z" : ""}`, class: style }, this.shapes);
+      this.shapes.put("path", { d: `M${path}${shape.is_closed ? "Z" : ""}`, class: style });
       return;
     }
     const [x, y] = this.#inLink(shape.link)(shape.at), r = shape.radius * this.view.scale, turned = this.angle(shape.link);
-    made("circle", { cx: x, cy: y, r, class: `${style}${shape.teeth ? " gear" : ""}` }, this.shapes);
+    this.shapes.put("circle", { cx: x, cy: y, r, class: `${style}${shape.teeth ? " gear" : ""}` });
     // a spoke shows how it turns
-    made("path", { d: `M${x} ${y}L${x + r * Math.cos(turned)} ${y - r * Math.sin(turned)}`, class: `${style} spoke` }, this.shapes);
+    this.shapes.put("path", { d: `M${x} ${y}L${x + r * Math.cos(turned)} ${y - r * Math.sin(turned)}`, class: `${style} spoke` });
   }
 
   #cylinder([a, b]) {
     const [u, v] = unit(b, a), long = distance(a, b), barrel = Math.min(0.62 * long, long - 14);
-    made("path", { d: `M${b[0]} ${b[1]}L${b[0] + barrel * u} ${b[1] + barrel * v}`, class: "barrel" }, this.links);
-    made("path", { d: `M${b[0]} ${b[1]}L${b[0] + barrel * u} ${b[1] + barrel * v}`, class: "barrel inner" }, this.links);
-    made("path", { d: `M${b[0] + 0.5 * barrel * u} ${b[1] + 0.5 * barrel * v}L${a[0]} ${a[1]}`, class: "rod" }, this.links);
+    this.links.put("path", { d: `M${b[0]} ${b[1]}L${b[0] + barrel * u} ${b[1] + barrel * v}`, class: "barrel" });
+    this.links.put("path", { d: `M${b[0]} ${b[1]}L${b[0] + barrel * u} ${b[1] + barrel * v}`, class: "barrel inner" });
+    this.links.put("path", { d: `M${b[0] + 0.5 * barrel * u} ${b[1] + 0.5 * barrel * v}L${a[0]} ${a[1]}`, class: "rod" });
   }
 
   // whether a point's path is shown: of those that only one moving link has, unless it was chosen otherwise
@@ -409,8 +444,9 @@ export class Canvas {
   #traces() {
     if (!this.motion?.poses) return;
     const { frame } = this;
-    for (const [letter, [xs, ys]] of Object.entries(this.motion.points)) {
+    for (const letter of Object.keys(this.motion.points)) {
       if (!this.isTraced(letter) && (this.chosen?.point !== letter || frame.includes(letter))) continue;
+      const [xs, ys] = this.motion.points[letter];
       let path = "", pen = "M";
       xs.forEach((x, k) => {
         if (x === null) { pen = "M"; return; }
@@ -418,13 +454,13 @@ export class Canvas {
         path += `${pen}${at[0].toFixed(1)} ${at[1].toFixed(1)}`;
         pen = "L";
       });
-      if (path) made("path", { d: path, class: "trace" }, this.traces);
+      if (path) this.traces.put("path", { d: path, class: "trace" });
     }
   }
 
   #ground([x, y]) {
     const lines = [-12, -6, 0, 6, 12].map((k) => `M${x + k} ${y + 16}l-5 7`).join("");
-    made("path", { d: `M${x} ${y}l-11 16h22Z M${x - 15} ${y + 16}h30${lines}`, class: "ground" }, this.marks);
+    this.marks.put("path", { d: `M${x} ${y}l-11 16h22Z M${x - 15} ${y + 16}h30${lines}`, class: "ground" });
   }
 
   #pair(pair) {
@@ -435,10 +471,10 @@ export class Canvas {
       const [on] = pair.links, turned = -(this.angle(on) + pair.guide[2]), degrees = (turned * 180) / Math.PI;
       const [x, y] = places[0], [ux, uy] = [Math.cos(turned), Math.sin(turned)];
       const far = Math.max(60, distance(places[0], places[1]) + 40);
-      if (on === "frame") made("path", { d: `M${x - far * ux} ${y - far * uy}L${x + far * ux} ${y + far * uy}`, class: "guide" }, this.guides);
-      if (pair.code === "P") made("rect", { x: -15, y: -9, width: 30, height: 18, rx: 2, class: "block", transform: `translate(${x} ${y}) rotate(${degrees})` }, this.marks);
+      if (on === "frame") this.guides.put("path", { d: `M${x - far * ux} ${y - far * uy}L${x + far * ux} ${y + far * uy}`, class: "guide" });
+      if (pair.code === "P") this.marks.put("rect", { x: -15, y: -9, width: 30, height: 18, rx: 2, class: "block", transform: `translate(${x} ${y}) rotate(${degrees})` });
     } else if (places.length > 1) {
-      made("path", { d: `M${places.map((one) => one.join(" ")).join("L")}`, class: "tie" }, this.guides);
+      this.guides.put("path", { d: `M${places.map((one) => one.join(" ")).join("L")}`, class: "tie" });
     }
   }
 
@@ -450,10 +486,10 @@ export class Canvas {
       const arrow = drive.is_angle
         ? `M${x - 7} ${y - 22}A23 23 0 0 0 ${x - 7} ${y + 22}m-8 1l8 -1l-2 -8`
         : `M${x - 22} ${y - 20}h44m-7 -5l7 5l-7 5m-30 -10l-7 5l7 5`;
-      made("path", { d: arrow, class: "turns" }, this.marks);
+      this.marks.put("path", { d: arrow, class: "turns" });
     }
     const at = this.handle && this.at(this.handle);
-    if (at) made("circle", { cx: at[0], cy: at[1], r: 12, class: "handle" }, this.marks);
+    if (at) this.marks.put("circle", { cx: at[0], cy: at[1], r: 12, class: "handle" });
   }
 
   // what a gesture shows above the drawing: the bar to be, the ring around what would be joined, what it snaps to

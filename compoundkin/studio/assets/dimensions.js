@@ -5,6 +5,12 @@ import { element, labelled, parts } from "./elements.js";
 const DRAGGED = 4; // pixels of a step of a number that is dragged
 const REST = 700; // milliseconds after the last arrow until it is one step of undo
 
+// an entry that is computed when it is first asked for: most points have no path that is drawn
+const asked = (holder, name, make) => {
+  const put = (value) => Object.defineProperty(holder, name, { value, enumerable: true });
+  Object.defineProperty(holder, name, { configurable: true, enumerable: true, get: () => put(make())[name] });
+};
+
 export class Dimensions {
   constructor(root, studio) {
     Object.assign(this, { studio, part: parts(root), fields: [], path: null, own: null, shown: "" });
@@ -127,19 +133,22 @@ export class Dimensions {
     const order = new Map(this.names.map((name, k) => [name, k]));
     const at = (link, letter) => ["x", "y"].map((axis, k) => of(`${link}.${letter}.${axis}`) ?? fixed[link]?.[letter]?.[k]);
     const told = (values) => Array.from(values, (one) => (Number.isFinite(one) ? one : null));
-    const points = {}, origins = {};
+    const points = { ...base.points }, origins = { ...base.origins }, known = new Set();
     for (const { name, points: letters } of this.studio.structure.links) {
       const own = links[order.get(name)];
       if (!own) continue;
-      if (base.origins[name]) origins[name] = [told(own.x), told(own.y), Array.from(own.angle)];
+      if (base.origins[name]) asked(origins, name, () => [told(own.x), told(own.y), Array.from(own.angle)]);
       for (const letter of letters) {
         const [px, py] = at(name, letter);
-        if (letter in points || px === undefined) continue;
-        const xs = Float64Array.from(own.x, (x, k) => x + Math.cos(own.angle[k]) * px - Math.sin(own.angle[k]) * py);
-        points[letter] = [told(xs), told(Float64Array.from(own.y, (y, k) => y + Math.sin(own.angle[k]) * px + Math.cos(own.angle[k]) * py))];
+        if (known.has(letter) || px === undefined) continue;
+        known.add(letter);
+        asked(points, letter, () => {
+          const xs = Float64Array.from(own.x, (x, k) => x + Math.cos(own.angle[k]) * px - Math.sin(own.angle[k]) * py);
+          return [told(xs), told(Float64Array.from(own.y, (y, k) => y + Math.sin(own.angle[k]) * px + Math.cos(own.angle[k]) * py))];
+        });
       }
     }
-    return { ...base, points: { ...base.points, ...points }, origins: { ...base.origins, ...origins }, assembled: Array.from(assembled), gaps: [] };
+    return { ...base, points, origins, assembled: Array.from(assembled), gaps: [] };
   }
 
   get names() { return this.studio.structure.links.map(({ name }) => name); }

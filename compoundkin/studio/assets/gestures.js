@@ -456,7 +456,9 @@ export class Gestures {
       ...(others.length ? others.slice(0, 3).map((one) => ({ words: `Slot for ${letter} along ${one}`, edit: { do: "slide", point: letter, on: one } })) : [{ words: "Slot along a bar", why: "there is no other bar" }]),
       ...(bars.length > 1 ? bars.slice(1, 3).map((one) => ({ words: `Weld ${bars[0]} and ${one}`, key: "W", edit: { do: "weld", point: letter, link: bars[0], with: one } })) : [{ words: "Weld", key: "W", edit: { do: "weld", point: letter } }]),
       ...(links.length > 1 ? bars.slice(0, 3).map((one) => ({ words: `Take ${one} off`, edit: { do: "tear", point: letter, link: one } })) : []),
-      { words: `Gears at ${other ?? "…"} and ${letter}…`, key: "R", why: other ? "" : none, run: () => this.#gears(other, letter) },
+      slide && other
+        ? { words: `Rack here, its pinion at ${other}`, key: "R", edit: { do: "rack", point: other, with: letter } }
+        : { words: `Gears or a belt at ${other ?? "…"} and ${letter}…`, key: "R", why: other ? "" : none, run: () => this.#gears(other, letter) },
       { words: `Cam at ${other ?? "…"} that leads ${letter}…`, key: "K", why: other ? "" : none, run: () => this.#cam(other, letter) },
       { words: canvas.isTraced(letter) ? `No path of ${letter}` : `Trace ${letter}`, key: "T", why: studio.motion?.poses ? "" : "it does not move yet", run: () => this.act("trace") },
       { words: lock ? "Unlock it" : "Lock it here", key: "L", run: () => this.lock("point", [letter]) },
@@ -542,7 +544,11 @@ export class Gestures {
       event.preventDefault();
       event.stopPropagation();
     });
-    this.studio.root.append(box);
+    // a region of its own, as it belongs to none of the page's
+    const region = document.createElement("section");
+    region.setAttribute("aria-label", "Menu");
+    region.append(box);
+    this.studio.root.append(region);
     box.style.left = `${Math.max(4, Math.min(around.left + at[0], innerWidth - box.offsetWidth - 4))}px`;
     box.style.top = `${Math.max(4, Math.min(around.top + at[1], innerHeight - box.offsetHeight - 4))}px`;
     this.opened = box;
@@ -558,7 +564,7 @@ export class Gestures {
     if (!this.opened) return;
     document.removeEventListener("pointerdown", this.#away, true);
     const hadFocus = this.opened.contains(this.studio.focused);
-    this.opened.remove();
+    this.opened.parentElement.remove();
     this.opened = null;
     if (hadFocus) this.canvas.svg.focus({ preventScroll: true });
   }
@@ -624,14 +630,19 @@ export class Gestures {
   #pairOf(what) {
     const { canvas, studio } = this, letters = [...new Set([...canvas.picked, canvas.chosen?.point, canvas.over?.point].filter(Boolean))];
     if (letters.length < 2) { studio.say(what === "gear" ? "Click one axis, point at the other, press R; or choose both with Shift" : "Click the cam's axis, point at the point that it leads, press K; or choose both with Shift"); return; }
-    if (what === "gear") this.#gears(letters[0], letters[1]);
+    const rack = letters.slice(0, 2).find((one) => studio.slideAt(one));
+    if (what === "gear" && rack) studio.edit({ do: "rack", point: letters.find((one) => one !== rack), with: rack });
+    else if (what === "gear") this.#gears(letters[0], letters[1]);
     else this.#cam(letters[0], letters[1]);
   }
 
   #gears(one, two) {
     const { studio, canvas } = this, at = (letter) => [["", "a wheel of its own"], ...studio.linksAt(letter).filter((name) => name !== "frame" && canvas.link(name).points.length > 1).map((name) => [name, name])];
-    this.#form(`Gears at ${one} and ${two}`, [["a", `Teeth at ${one}`, 20], ["b", `Teeth at ${two}`, 40], ["first", `On, at ${one}`, at(one)], ["second", `On, at ${two}`, at(two)], ["internal", `The one at ${two} is a ring`, false]],
-      ({ a, b, ...rest }) => studio.edit({ do: "gear", point: one, with: two, teeth: [a, b], ...rest }));
+    const kinds = [["gear", "gears"], ["ring", `gears, the one at ${two} a ring`], ["belt", "a belt or a chain"], ["crossed", "a crossed belt"]];
+    this.#form(`Gears or a belt at ${one} and ${two}`, [["kind", "They are", kinds], ["a", `Teeth at ${one} (of a belt: radius)`, 20], ["b", `Teeth at ${two} (of a belt: radius)`, 40], ["first", `On, at ${one}`, at(one)], ["second", `On, at ${two}`, at(two)]],
+      ({ kind, a, b, ...on }) => studio.edit(kind === "belt" || kind === "crossed"
+        ? { do: "belt", point: one, with: two, radii: [a, b], crossed: kind === "crossed", ...on }
+        : { do: "gear", point: one, with: two, teeth: [a, b], internal: kind === "ring", ...on }));
   }
 
   #cam(axis, letter) {

@@ -251,7 +251,7 @@ BARS_FROM_LETTERS = """(() => {
   for (let pose = 0; pose < count; pose += 5) {
     canvas.pose = pose;
     canvas.draw();
-    for (const text of canvas.letters.querySelectorAll("text")) {
+    for (const text of canvas.letters.root.querySelectorAll("text")) {
       const letter = text.textContent, box = text.getBBox(), a = canvas.at(letter);
       const p = [box.x + box.width / 2 - a[0], box.y + box.height / 2 - a[1]];
       for (const { points } of links.filter((one) => one.name !== "frame" && one.points.includes(letter))) {
@@ -472,7 +472,7 @@ def test_the_menu_says_why_and_forms_make_gears(window: Any) -> None:
     four_bar(seen)
     seen.view.keyboard.press("Escape")
     found = seen.menu(B)
-    gears = found.get_by_role("menuitem", name="Gears at")
+    gears = found.get_by_role("menuitem", name="Gears or a belt at")
     assert gears.get_attribute("aria-disabled") == "true"
     assert "click the other point first" in gears.inner_text()
     assert found.get_by_role("menuitem", name="Weld bar1 and bar2").get_attribute("aria-disabled") is None
@@ -482,7 +482,7 @@ def test_the_menu_says_why_and_forms_make_gears(window: Any) -> None:
     seen.view.keyboard.press("Escape")
     seen.view.mouse.click(*seen.at((300, 250)))
     seen.view.mouse.click(*seen.at(A))
-    seen.pick(D, "Gears at A and D")
+    seen.pick(D, "Gears or a belt at A and D")
     form = seen.view.locator("dialog")
     form.get_by_label("On, at A").select_option("bar1")
     form.get_by_role("button", name="Do it").click()
