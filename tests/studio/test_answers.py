@@ -15,7 +15,7 @@ import compoundkin as ck
 from compoundkin.files.mechanism_files import loads
 from compoundkin.files.shipped_mechanisms import resolve, shipped
 from compoundkin.structure.decomposition import decomposed
-from compoundkin.studio import answer, answers
+from compoundkin.studio import answer, reading
 from compoundkin.studio.edits import EDITS
 
 pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
@@ -377,14 +377,14 @@ def test_what_moves_only_far_from_its_drawing_is_told_with_its_motion(monkeypatc
     text = shipped_text("constant-breadth-yoke")
     expected = structure(text)
     assert (expected["moves"], expected["may_move"]) == (True, False)
-    monkeypatch.setattr(answers, "decompose_near_drawing", decomposed)
-    answers.reading_of.cache_clear()
+    monkeypatch.setattr(reading, "decompose_near_drawing", decomposed)
+    reading.reading_of.cache_clear()
     found = structure(text)
     assert (found["moves"], found["may_move"]) == (False, True)
     reply = answer(text, {"ask": "motion"})
     assert reply["poses"] == 361
     assert {"ask": "structure", **reply["structure"]} == expected
-    answers.reading_of.cache_clear()
+    reading.reading_of.cache_clear()
 
 
 def test_a_document_in_json_stays_one() -> None:

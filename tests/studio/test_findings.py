@@ -12,7 +12,8 @@ import pytest
 import compoundkin as ck
 from compoundkin.files.mechanism_files import dumps, loads
 from compoundkin.studio import answer
-from compoundkin.studio.answers import _shown, reading_of
+from compoundkin.studio.answers import _shown
+from compoundkin.studio.reading import reading_of
 from tests.studio.test_answers import FOUR_BAR, START, edited, shipped_text
 
 pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
