@@ -96,11 +96,14 @@ def worst(motion: Motion, name: str, limit: float, parts: dict[str, Number], cou
     Each part is designs x poses, or is broadcast to it.
     A value that is not a number is worse than any other.
     """
-    found = Finding(name, 0.0, limit, "", ())
+    found, all_count = Finding(name, 0.0, limit, "", ()), bool(counted.all())
     for label, part in parts.items():
-        values = np.where(counted, part, 0.0)
-        at = int(np.argmax(np.where(np.isnan(values), np.inf, values)))
+        values = part if all_count and np.shape(part) == counted.shape else np.where(counted, part, 0.0)
+        at = int(values.argmax())
         value = float(values.flat[at])
+        if value != value:
+            at = int(np.argmax(np.where(np.isnan(values), np.inf, values)))
+            value = float(values.flat[at])
         if not value <= found.value:
             pose = tuple(int(i) for i in np.unravel_index(at, motion.shape)) if motion.shape else ()
             found = Finding(name, value, limit, label, pose)

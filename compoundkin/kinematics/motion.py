@@ -117,11 +117,17 @@ class Motion(CopiesFields, DisplaysPicture, AsksForces, ExplainsAttributes):
         True
         """
         self.grid.require(order)
-        found = self._errors[order]
-        for pose in self.poses.values() if order else ():
+        return self.grid.known(np.where(self._finite[order], self._errors[order], np.inf) if order else self._errors[0])
+
+    @cached_property
+    def _finite(self) -> list[Number]:
+        """Where all links have a finite derivative, of each order."""
+        found: list[Number] = [np.True_] * (self.order + 1)
+        for pose in self.poses.values():
             for series in (pose.z, pose.u):
-                found = np.where(np.isfinite(series.c[min(order, series.order)]), found, np.inf)
-        return self.grid.known(found)
+                for k in range(1, self.order + 1):
+                    found[k] = found[k] & np.isfinite(series.c[min(k, series.order)])
+        return found
 
     @cached_property
     def _errors(self) -> list[Number]:
@@ -133,7 +139,7 @@ class Motion(CopiesFields, DisplaysPicture, AsksForces, ExplainsAttributes):
         """The mechanism's length scale, that of the greatest design."""
         return self.solving_order.size
 
-    @property
+    @cached_property
     def sizes(self) -> Number:
         """The length scale of each design, (designs, 1); a number if all share it."""
         return size_in(self.inputs.ends, self.size)

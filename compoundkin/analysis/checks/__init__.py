@@ -8,6 +8,7 @@ from compoundkin.analysis.checks.continuation_check import choice_findings, cont
 from compoundkin.analysis.checks.difference_check import difference_findings
 from compoundkin.analysis.checks.residuals import centre_findings, residuals
 from compoundkin.base.arguments import checked
+from compoundkin.base.buffers import without_collection
 from compoundkin.base.linear import one_thread
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.finding import Check, Checkable, Finding
@@ -42,7 +43,8 @@ def verify(motion: Motion | Checkable) -> Check:
     closed = int(np.count_nonzero(motion.failed == 0))
     if not closed:
         return Check((), 0, 0)
-    with np.errstate(all="ignore"):
+    # the numbers of many links are many objects, none of which refers to itself
+    with np.errstate(all="ignore"), without_collection():
         found = [
             *residuals(motion),
             *centre_findings(motion),

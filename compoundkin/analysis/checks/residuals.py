@@ -7,9 +7,11 @@ derivative. Drivers: the driven coordinate must be the prescribed one.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 from functools import reduce
 from math import factorial
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -34,21 +36,55 @@ ORDERS = ("closure", *OF_POINTS[1:])
 # n links have n (n - 1) / 2 centres and n (n - 1) (n - 2) / 6 triples: beyond this many links they take longer
 # than the motion did, and a mechanism of so many links is no longer checked by them.
 MOST_LINKS = 40
+# Of so many poses at most series are kept from one order to the next.
+FEW_POSES = 512
+Result = TypeVar("Result")
 
 
 def residuals(motion: Motion) -> Iterator[Finding]:
     """Yield the worst residuals of pairs, links and drivers in each order."""
+    known = KnownSeries(motion)
     for k in range(motion.order + 1):
         counted = motion.failed == 0 if k == 0 else motion.regular
         scale = _scale(motion, k, counted)
-        for name, parts in _parts(motion, k):
+        for name, parts in _parts(known, k):
             relative = {label: residual / scale for label, residual in parts.items()}
             relative = rounded_by(motion, k, relative, TOLERANCE, scale)
             yield worst(motion, name, TOLERANCE, relative, counted)
         if motion.structure.redundant:
-            relative = {pair.name: _pair(motion, pair, k) / scale for pair in motion.structure.redundant}
+            relative = {pair.name: _pair(known, pair, k) / scale for pair in motion.structure.redundant}
             yield worst(motion, f"redundant pairs, {ORDERS[k]}", FITS, relative, counted)
     yield from _fit_findings(motion)
+
+
+@dataclass(frozen=True, eq=False)
+class KnownSeries:
+    """What residuals of all orders are read off: closures of pairs, squares of links' orientations.
+
+    Of few poses they are kept from one order to the next: many links then take less time; of many, too much memory.
+    """
+
+    motion: Motion
+    _kept: dict[tuple[str, str], Any] = field(default_factory=dict)
+
+    def closure(self, pair: Pair) -> tuple[Series, ...]:
+        """Return the closure of a pair."""
+        ends, members = self.motion.inputs.ends[pair.name], pair.members
+        return self._once(
+            "closure", pair.name, lambda: pair.closure(ends, tuple(self.motion.poses[one] for one in members))
+        )
+
+    def square(self, link: str) -> Series:
+        """Return the square of a link's orientation."""
+        return self._once("square", link, self.motion.poses[link].u.abs2)
+
+    def _once(self, what: str, name: str, make: Callable[[], Result]) -> Result:
+        if self.motion.failed.size > FEW_POSES:
+            return make()
+        if (what, name) not in self._kept:
+            self._kept[what, name] = make()
+        found: Result = self._kept[what, name]
+        return found
 
 
 def _fit_findings(motion: Motion) -> Iterator[Finding]:
@@ -82,29 +118,30 @@ def _off(name: str, gap: Number, limit: Number) -> str:
     return f"{name}, off by {float(np.max(gap)):.6g}" if np.any(gap > limit) else name
 
 
-def _parts(motion: Motion, k: int) -> Iterator[tuple[str, dict[str, Number]]]:
+def _parts(known: KnownSeries, k: int) -> Iterator[tuple[str, dict[str, Number]]]:
     """Yield the residuals of one order by pair, link or driver."""
+    motion = known.motion
     redundant = {pair.name for pair in motion.structure.redundant}
     pairs = {name: pair for name, pair in motion.solving_order.pairs.items() if name not in redundant}
-    yield ORDERS[k], {name: _pair(motion, pair, k) for name, pair in pairs.items()}
-    yield f"rigid links, {ORDERS[k]}", {name: _rigid(motion, name, k) for name in motion.poses}
+    yield ORDERS[k], {name: _pair(known, pair, k) for name, pair in pairs.items()}
+    yield f"rigid links, {ORDERS[k]}", {name: _rigid(known, name, k) for name in motion.poses}
     driven = {name: _driver(motion, name, k) for name in motion.inputs.drives}
     passive = [one for body in motion.structure.bodies for one in body.driven if one.is_passive]
     if driven or passive:
         yield f"drivers, {ORDERS[k]}", {**driven, **{one.link: _still(motion, one, k) for one in passive}}
 
 
-def _pair(motion: Motion, pair: Pair, k: int) -> Number:
-    ends = motion.inputs.ends[pair.name]
-    poses = tuple(motion.poses[member] for member in pair.members)
+def _pair(known: KnownSeries, pair: Pair, k: int) -> Number:
+    motion = known.motion
     # an angle that ought to be zero counts as the length by which it moves a point at the mechanism's size
     lengths = [motion.sizes / scale for scale in constraint_scales(pair, motion.sizes)]
     if k == 1:
+        ends, poses = motion.inputs.ends[pair.name], tuple(motion.poses[member] for member in pair.members)
         rates = [v for pose in poses for v in _twist(pose.z.derivative(1), pose.u)]
         rows = pair.jacobian(ends, poses)[..., : pair.held, :]
         held = [sum(rows[..., j, i] * rates[i] for i in range(len(rates))) for j in range(pair.held)]
     else:
-        held = [series.derivative(k) for series in pair.closure(ends, poses)]
+        held = [series.derivative(k) for series in known.closure(pair)]
     return _largest([one * length for one, length in zip(held, lengths, strict=True)])
 
 
@@ -113,9 +150,9 @@ def _twist(velocity: Number, u: Series) -> tuple[Number, Number, Number]:
     return velocity.real, velocity.imag, c0.real * c1.imag - c0.imag * c1.real
 
 
-def _rigid(motion: Motion, link: str, k: int) -> Number:
-    length = motion.poses[link].u.abs2().derivative(k)
-    return np.abs(length - (1.0 if k == 0 else 0.0)) * motion.sizes
+def _rigid(known: KnownSeries, link: str, k: int) -> Number:
+    length = known.square(link).derivative(k)
+    return np.abs(length - (1.0 if k == 0 else 0.0)) * known.motion.sizes
 
 
 def _driver(motion: Motion, name: str, k: int) -> Number:
@@ -152,8 +189,9 @@ def _scale(motion: Motion, k: int, counted: Number) -> Number:
         for j in range(1, k + 1):
             # products of lower derivatives enter the k-th one: a speed cubed is as large a term as a jerk
             weight = factorial(k) * (np.abs(pose.u.derivative(j)) * size / factorial(j))
-            largest = np.maximum(largest, np.maximum(weight, np.abs(pose.z.derivative(j)) if j == k else 0.0))
-            largest = np.maximum(largest, size * np.abs(pose.u.derivative(1)) ** k)
+            largest = np.maximum(largest, weight)
+        largest = np.maximum(largest, np.abs(pose.z.derivative(k)))
+        largest = np.maximum(largest, size * np.abs(pose.u.derivative(1)) ** k)
     fastest = _greatest(largest, counted, size)
     return np.where(fastest > 0.0, np.maximum(largest, SLOWEST * fastest), 1.0)
 
