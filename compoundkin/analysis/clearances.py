@@ -111,12 +111,12 @@ class ClearanceCourse(ShortRepr):
         found = np.full(len(places), np.nan)
         closed = np.flatnonzero(moved.failed[0][at] == 0)
         z, u = (
-            np.array([_at_places(part, at[closed]) for part in parts]).reshape(-1, len(closed))
+            np.array([np.broadcast_to(np.ravel(part.c[0]), there.shape) for part in parts]).reshape(-1, len(there))
             for parts in ([moved.poses[link].z for link in self._rows], [moved.poses[link].u for link in self._rows])
         )
         least = np.full(len(closed), np.inf)
         for pairs in self._alike:
-            pairs.lower(least, which[closed].astype(int), z, u)
+            pairs.lower(least, which[closed].astype(int), z, u, at[closed])
         found[closed] = least
         return found
 
@@ -255,18 +255,19 @@ class ShapePairs(ShortRepr):
     closed: tuple[bool, bool]
     reach: Number
 
-    def lower(self, found: Number, which: Number, z: Number, u: Number) -> None:
-        """Lower the values `found` (n,) to the clearances of bodies, by their indices.
+    def lower(self, found: Number, which: Number, z: Number, u: Number, places: Number) -> None:
+        """Lower the values `found` (n,) to the clearances of bodies, by their indices, at places by their indices.
 
-        `z` and `u` are the origins and orientations of all links, (links, n).
+        `z` and `u` are the origins and orientations of all links, (links, places).
         """
         first, last = np.searchsorted(self.bodies, which, "left"), np.searchsorted(self.bodies, which, "right")
         count = last - first
         at = np.repeat(np.arange(len(which)), count)
         pair = np.arange(len(at)) + np.repeat(first - np.cumsum(count) + count, count)
+        there = places[at]
         if len(at):
             one, other = (
-                geometries(z[rows[pair], at][:, None] + u[rows[pair], at][:, None] * core[pair], closed)
+                geometries(z[rows[pair], there][:, None] + u[rows[pair], there][:, None] * core[pair], closed)
                 for rows, core, closed in zip(self.links, self.cores, self.closed, strict=True)
             )
             np.minimum.at(found, at, shapely().distance(one, other) - self.reach[pair])
