@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -60,36 +60,58 @@ Examples:
   compoundkin trace curve.csv
   compoundkin trace letter.svg --links 4 --save found --picture found.svg
   compoundkin trace path.dxf --transmission 30 --format html -o found.html
+  compoundkin trace tracked.csv --times t              # a column of times, the driver turns evenly
+  compoundkin trace tracked.csv --angles crank         # a column of the driver's angles in degrees
+  compoundkin trace foot.svg --obstacle box.svg --obstacle ground.csv
 """
 )
 @click.argument("file", type=click.Path(), metavar="CURVE")
 @click.option("--links", type=int, default=6, show_default=True, help="At most so many links: 4, 6 or 8.")
 @click.option("--open/--closed", "is_open", default=None, help="What the curve is, where its ends do not tell.")
+@click.option("--times", metavar="COLUMN", help="The column of a table with the times of points: an even turn.")
+@click.option("--angles", metavar="COLUMN", help="The column of a table with the driver's angles, in degrees.")
 @click.option("--transmission", type=float, default=0.0, metavar="DEGREES", help="The least transmission angle.")
+@click.option(
+    "--obstacle",
+    "obstacles",
+    type=click.Path(),
+    multiple=True,
+    metavar="FILE",
+    help="A closed curve that pins and links keep clear of; may be repeated.",
+)
 @click.option(
     "--save", "folder", type=click.Path(), metavar="FOLDER", help="Write each mechanism as a file there: a new folder."
 )
 @click.option("--picture", "picture", type=click.Path(), metavar="FILE", help="Draw the mechanisms side by side.")
 @report_options
 def trace_command(
-    file: str, links: int, is_open: bool | None, transmission: float, folder: str | None, picture: str | None,
-    form: str | None, path: str | None,
+    file: str, links: int, is_open: bool | None, times: str | None, angles: str | None, transmission: float,
+    obstacles: tuple[str, ...], folder: str | None, picture: str | None, form: str | None, path: str | None,
 ) -> int:  # fmt: skip
     """Find linkages whose point follows a drawn curve, of a .csv, .svg or .dxf file.
 
     A curve whose ends meet is traced once in a turn of the driver, an open one by a part of it. Exit code 3: no
     mechanism without a defect.
     """
-    from math import radians
+    import numpy as np
 
+    from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.dimensional.synthesis import synthesise
     from compoundkin.dimensional.tasks import curve
-    from compoundkin.files.curve_files import read_curve
+    from compoundkin.files.curve_files import read_curve, read_timed_curve
 
     _check_places(picture, folder)
-    task = curve(read_curve(file), closed=None if is_open is None else not is_open, links=links)
+    options: dict[str, Any] = {"closed": None if is_open is None else not is_open, "links": links}
+    if times and angles:
+        raise InvalidInput(Problem("--angles", "--times is given too", "leave out one of them"))
+    if column := times or angles:
+        places, values = read_timed_curve(file, column)
+        task = curve(places, **({"times": values} if times else {"at": np.deg2rad(values)}), **options)
+    else:
+        task = curve(read_curve(file), **options)
+    walls = [read_curve(wall) for wall in obstacles] or None
     with working("tracing"):
-        answer = synthesise(task, transmission=radians(transmission))
+        answer = synthesise(task, transmission=float(np.deg2rad(transmission)), obstacles=walls)
     return _put(answer, folder, picture, form, path)
 
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
@@ -25,17 +25,18 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.errors import InvalidInput, Problem, StudyStopped
 from compoundkin.base.suffixes import suffix_for
 from compoundkin.dimensional import tasks
 from compoundkin.dimensional.candidates import Linkage
-from compoundkin.dimensional.curve_chains import CRANK, ChainPlan, CurveChain, Laying, curve_chains, turn
+from compoundkin.dimensional.curve_chains import CRANK, ChainPlan, CurveChain, Laying, curve_chain, curve_chains, turn
 from compoundkin.dimensional.curve_conditions import CurveConditions, LaidDesigns
 from compoundkin.dimensional.tasks import Conditions, CurveTiming
 from compoundkin.files.atomic import new_folder
 from compoundkin.files.parsed_document import unreadable
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.studies.samples.random_samples import SobolSample
+from compoundkin.studies.study import ends_a_run, run_pieces, workers
 from compoundkin.studies.study_folder import part_columns, part_content, part_rows
 from compoundkin.studies.study_program import StudyColumn
 
@@ -466,13 +467,19 @@ def _scaled(best: Number, own: Number, targets: Number) -> tuple[Number, Number]
 
 @checked
 def coupler_atlas(
-    links: int = 6, count: int = 1_000_000, seed: int = 0, folder: str | os.PathLike[str] | None = None
+    links: int = 6,
+    count: int = 1_000_000,
+    seed: int = 0,
+    folder: str | os.PathLike[str] | None = None,
+    *,
+    on: Any = None,
 ) -> CouplerAtlas:
     """Return an atlas of so many designs whose driver turns fully, of chains of at most so many links: 4, 6 or 8.
 
     It is the same whenever it is made. A `folder` keeps it, a Parquet file for each chain: it is made there once, and
-    opened from then on, not loaded. Raises InvalidInput for other numbers of links, a negative seed, and a folder of
-    anything else.
+    opened from then on, not loaded. Chains are computed here, or `on` other workers: any executor of
+    `concurrent.futures`, or a Dask client. Raises InvalidInput for other numbers of links, a negative seed, a folder of
+    anything else, and what computes nothing; StudyStopped where workers die.
 
     >>> len(coupler_atlas(4, 1000))
     1000
@@ -485,14 +492,14 @@ def coupler_atlas(
     if seed < 0:
         raise InvalidInput(Problem("seed", f"{seed} is no seed", "give a whole number from 0 on"))
     if folder is None:
-        return _atlas(links, count, seed)
+        return _atlas(links, count, seed) if on is None else _held(_all_made(links, count, seed, on))
     where = Path(folder)
     definition = json.dumps({"format": 2, "links": links, "count": count, "seed": seed}) + "\n"
     fingerprint = hashlib.sha256(definition.encode()).hexdigest()[:16]
     kept = _definition_in(where)
     if kept is None:
         with new_folder(where) as fresh:
-            for k, (chain, designs, descriptors) in enumerate(_all_made(links, count, seed)):
+            for k, (chain, designs, descriptors) in enumerate(_all_made(links, count, seed, on)):
                 columns = {one.name: designs[:, n] for n, one in enumerate(chain.numbers)}
                 columns[_DESCRIPTOR.name] = np.ravel(descriptors.view(f"V{descriptors.strides[0]}"))
                 (fresh / _file(k)).write_bytes(part_content([*_numbers(chain), _DESCRIPTOR], [columns], fingerprint))
@@ -530,8 +537,11 @@ def _numbers(chain: CurveChain) -> list[StudyColumn]:
 
 @lru_cache(maxsize=4)
 def _atlas(links: int, count: int, seed: int) -> CouplerAtlas:
-    return CouplerAtlas(tuple(AtlasPart(chain, len(designs), (designs, descriptors))
-                              for chain, designs, descriptors in _all_made(links, count, seed)))  # fmt: skip
+    return _held(_all_made(links, count, seed))
+
+
+def _held(made: Iterable[tuple[CurveChain, Number, Number]]) -> CouplerAtlas:
+    return CouplerAtlas(tuple(AtlasPart(chain, len(designs), (designs, found)) for chain, designs, found in made))
 
 
 def _shares(chains: Sequence[CurveChain], count: int) -> list[int]:
@@ -541,29 +551,69 @@ def _shares(chains: Sequence[CurveChain], count: int) -> list[int]:
     return [int(share) + 1 for share in np.diff(ends, prepend=0)]
 
 
-def _all_made(links: int, count: int, seed: int) -> Iterator[tuple[CurveChain, Number, Number]]:
+class _Piece(NamedTuple):
+    """What is computed by itself: so many designs of a chain, where it has eight links on those of its parent."""
+
+    plan: ChainPlan
+    kept: int
+    seed: int
+    base: Number | None = None
+
+
+def _all_made(links: int, count: int, seed: int, on: Any = None) -> Iterator[tuple[CurveChain, Number, Number]]:
     """Yield chains with their designs and descriptors. Those of eight links are dyads on designs of six."""
     chains, made = curve_chains(links), dict[ChainPlan, Number]()
-    for k, (chain, share) in enumerate(zip(chains, _shares(chains, count), strict=True)):
-        base = (chain.parent, made[chain.parent.plan]) if chain.links == 8 else None
-        designs, found = _made(chain, share, seed + k, base)
-        made[chain.plan] = designs
-        yield chain, designs, found
+    shares = enumerate(zip(chains, _shares(chains, count), strict=True))
+    pieces = [_Piece(chain.plan, share, seed + k) for k, (chain, share) in shares]
+    for is_grown in (False, True):
+        some = [piece for piece, chain in zip(pieces, chains, strict=True) if (chain.links == 8) == is_grown]
+        if is_grown:
+            some = [piece._replace(base=made[curve_chain(piece.plan).parent.plan]) for piece in some]
+        for piece, (designs, found) in _in_order(some, on):
+            made[piece.plan] = designs
+            yield curve_chain(piece.plan), designs, found
 
 
-def _made(chain: CurveChain, count: int, seed: int, base: tuple[CurveChain, Number] | None) -> tuple[Number, Number]:
+def _in_order(pieces: Sequence[_Piece], on: Any) -> Iterator[tuple[_Piece, tuple[Number, Number]]]:
+    """Yield pieces in their order with what is made of them, here or on other workers."""
+    if on is None:
+        yield from ((piece, _made(piece)) for piece in pieces)
+        return
+    done, wanted = dict[int, tuple[Number, Number]](), 0
+    with workers(on, None) as computing:
+        assert computing.executor is not None
+        numbered = list(enumerate(pieces))
+        try:
+            for (k, _), found in run_pieces(computing.executor, _made_of_numbered, numbered, computing.room):
+                done[k] = found
+                while wanted in done:
+                    yield pieces[wanted], done.pop(wanted)
+                    wanted += 1
+        except Exception as error:
+            if ends_a_run(error) and not isinstance(error, InvalidInput):
+                what = str(error).strip() or type(error).__name__
+                raise StudyStopped(Problem("on", what, "make the atlas again")) from error
+            raise
+
+
+def _made_of_numbered(one: tuple[int, _Piece]) -> tuple[Number, Number]:
+    return _made(one[1])
+
+
+def _made(piece: _Piece) -> tuple[Number, Number]:
     """Return the first so many designs of a chain that turn fully, and the descriptors of their curves."""
+    chain, count = curve_chain(piece.plan), piece.kept
     most = 1 << max(count * DRAWS, BLOCK).bit_length()
-    sample = SobolSample(min(most, 1 << 29), seed)
+    sample = SobolSample(min(most, 1 << 29), piece.seed)
     designs, found, kept = list[Number](), list[Number](), 0
     for first in range(0, sample.count, BLOCK):
         if kept >= count:
             break
         units = sample.units(len(chain.numbers), range(first, first + BLOCK))
         drawn = chain.designs(units)
-        if base is not None:
-            own = base[1][np.arange(first, first + BLOCK) % len(base[1])].astype(float)
-            drawn = base[0].grown_designs(chain, own, units, keep=False)
+        if piece.base is not None:
+            own = piece.base[np.arange(first, first + BLOCK) % len(piece.base)].astype(float)
+            drawn = chain.parent.grown_designs(chain, own, units, keep=False)
         drawn = drawn.astype(np.float32).astype(float)  # as they are kept
         curves, clear = chain.curves(drawn, POSES)
         drawn, curves = drawn[clear], curves[clear]

@@ -50,6 +50,36 @@ def read_curve(path: str | os.PathLike[str]) -> Number:
     return found
 
 
+def read_timed_curve(path: str | os.PathLike[str], column: str) -> tuple[Number, Number]:
+    """Return the places along the curve of a table, complex (n,), and another of its columns by its heading (n,).
+
+    Raises InvalidInput for other files than tables, columns that are not there, and cells that are no numbers.
+    """
+    if SUFFIXES["curve"].get(suffix_of(path)) != "csv":
+        raise unreadable(path, "only a table has columns", "give a .csv with a heading, such as t,x,y")
+    places = read_curve(path)
+    rows = _rows(_lines(Path(path).read_bytes(), str(path)))
+    headings = next((row for row in rows if {"x", "y"} <= set(_words(row))), None)
+    if headings is None:
+        raise InvalidInput(Problem(str(path), "no heading names its columns", f"put a first line: {column},x,y"))
+    names = [cell.strip().lower() for cell in headings]
+    at = next((k for k, word in enumerate(zip(names, _words(headings), strict=True)) if column.lower() in word), None)
+    if at is None:
+        known = ", ".join(cell.strip() for cell in headings)
+        raise InvalidInput(Problem(str(path), f"it has no column {column}", f"its columns are {known}"))
+    x, y = (_words(headings).index(axis) for axis in "xy")
+    values = []
+    for row in rows[rows.index(headings) + 1 :]:
+        cells = [row[c] if c < len(row) else "" for c in (x, y)]
+        if any(cells):
+            value = _real(row[at]) if at < len(row) else None
+            if value is None:
+                where = f"{path}: {', '.join(row)}"
+                raise InvalidInput(Problem(where, f"there is no number in column {column}", "each point needs one"))
+            values.append(value)
+    return places, np.array(values)
+
+
 def _text(content: bytes, where: str) -> str:
     try:
         return content.decode("utf-8-sig")
@@ -58,8 +88,7 @@ def _text(content: bytes, where: str) -> str:
 
 
 def _of_table(content: bytes, where: str) -> list[Number]:
-    lines = [line for line in _text(content, where).splitlines() if line.strip() and not line.lstrip().startswith("#")]
-    rows = [[cell.strip(' "') for cell in line.split(_separator(lines))] for line in lines]
+    rows = _rows(_lines(content, where))
     columns, first = _columns(rows, where)
     places = []
     for k, row in enumerate(rows[first:], start=first + 1):
@@ -73,6 +102,21 @@ def _of_table(content: bytes, where: str) -> list[Number]:
     return [np.array(places)]
 
 
+def _lines(content: bytes, where: str) -> list[str]:
+    """Return the lines of a table but for empty ones and remarks."""
+    return [line for line in _text(content, where).splitlines() if line.strip() and not line.lstrip().startswith("#")]
+
+
+def _rows(lines: list[str]) -> list[list[str]]:
+    separator = _separator(lines)
+    return [[cell.strip(' "') for cell in line.split(separator)] for line in lines]
+
+
+def _words(row: list[str]) -> list[str]:
+    """Return the first words of cells, without units."""
+    return [re.split(r"[\s(\[_]", cell.strip().lower())[0] for cell in row]
+
+
 def _separator(lines: list[str]) -> str | None:
     """Return what parts the cells of the last line, None for blanks."""
     return next((one for one in _SEPARATORS if one is None or (lines and one in lines[-1])), None)
@@ -81,7 +125,7 @@ def _separator(lines: list[str]) -> str | None:
 def _columns(rows: list[list[str]], where: str) -> tuple[tuple[int, int], int]:
     """Return the columns of x and y, and the index of the first row of numbers."""
     for k, row in enumerate(rows):
-        words = [re.split(r"[\s(\[_]", cell.strip().lower())[0] for cell in row]
+        words = _words(row)
         if "x" in words and "y" in words:
             return (words.index("x"), words.index("y")), k + 1
         if row and all(_real(cell) is not None for cell in row):

@@ -92,9 +92,14 @@ def _taken(store: RunStore, answered: Iterable[tuple[range, Any]]) -> Iterator[r
             store.take(rows, answer)
             yield rows
     except Exception as error:
-        if isinstance(error, _ENDS) or type(error).__module__.partition(".")[0] in _CARRIERS:
+        if ends_a_run(error):
             raise _stopped(store, error) from error
         raise
+
+
+def ends_a_run(error: Exception) -> bool:
+    """Return whether an error ends a run on workers and is no programming error."""
+    return isinstance(error, _ENDS) or type(error).__module__.partition(".")[0] in _CARRIERS
 
 
 def _answered(computing: Workers, store: RunStore, pieces: Iterable[range]) -> Generator[tuple[range, Any]]:
