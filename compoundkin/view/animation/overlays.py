@@ -195,6 +195,8 @@ def with_force_arrows(
     return larger, (*kept, *(_arrows(larger, scale, courses) for scale in scales)), tuple(marks)
 
 
+# Half the size of a pin, on which no name stands.
+PIN = 6.0 + 6.0j
 # Arrows shorter than this have no name in a film, and moments below this part of their greatest no arc.
 NAMED, TURNING = 14.0, 0.01
 
@@ -204,12 +206,12 @@ TURNED, BESIDE_PARTS = (0.0, 0.6, -0.6, 1.2, -1.2), (0.75, 0.5)
 
 
 def _places_of_names(sketch: MovingSketch, marks: Sequence[MovingMark]) -> list[tuple[Number, complex]]:
-    """Return where letters, numbers and the names of marks are over the assembled poses, with half their sizes."""
+    """Return where letters, numbers, names of marks and pins are over the assembled poses, with half their sizes."""
     found = [(sketch.places(part) + text.at, text_half(text.text, LETTER))
              for part in sketch.parts if part.is_label for text in texts_in(list(leaves(part.shapes)))]  # fmt: skip
     found += [(np.where(mark.shown, mark.places + text.at, np.nan), text_half(text.text, SMALL))
               for mark in marks for text in texts_in(mark.marks)]  # fmt: skip
-    return found
+    return [*found, *((point_places(sketch, letter), PIN) for letter in sketch.scene.letters)]
 
 
 def _clear_places(offered: Sequence[Number], half: complex, taken: Sequence[tuple[Number, complex]]) -> Number:

@@ -66,7 +66,12 @@ from compoundkin.view.sketch.shapes import (
     shape_corners,
     sheet,
 )
-from compoundkin.view.sketch.sketch_dimensions import dimension_shapes, offset_shapes, room_for_offsets
+from compoundkin.view.sketch.sketch_dimensions import (
+    dimension_shapes,
+    offset_shapes,
+    room_for_dimensions,
+    room_for_offsets,
+)
 from compoundkin.view.sketch.sketch_style import LETTER, LINE
 from compoundkin.view.sketch.symbol_shapes import driver_arrows, pair_marks, wedge_ends
 from compoundkin.view.sketch.traced_numbers import as_place
@@ -89,15 +94,23 @@ MOST_GHOSTS = 60
 
 
 def window_on(
-    scene: Scene, more: Sequence[Scene] = (), paths: Sequence[str] = (), preferred: Sequence[complex] = ()
+    scene: Scene,
+    more: Sequence[Scene] = (),
+    paths: Sequence[str] = (),
+    preferred: Sequence[complex] = (),
+    larger: float = 1.0,
 ) -> Window:
-    """Return the window that holds a scene, its ghosts and paths. It also holds `preferred` ones that are not far."""
+    """Return the window that holds a scene, its ghosts and paths. It also holds `preferred` ones that are not far.
+
+    The mechanism is so many times `larger` than else, beside numbers and signs that are as large as ever.
+    """
     places = [place for shown in (scene, *more) for place in extent(shown)]
     places += [scene.places(letter) for letter in paths]
     plain = Window(1.0, 0j, 0.0, 0.0)
     links = [name for name in scene.mechanism.links if name != FRAME and not is_inside(scene, name)]
     bars = [abs(b - a) for name in links for a, b in edges(skeleton(scene, plain, name))]
     first = window_around(places, bars)
+    first = replace(first, scale=first.scale * larger)
     drawn = layered(Painter(scene, first))
     drawn += [shape for other in more for shape in layered(Painter(other, first), grounded=False)]
     points = np.concatenate([shape_corners(drawn), *(first.at(scene.places(letter)) for letter in paths)])
@@ -159,7 +172,10 @@ def draw_sketch(what: Drawable, options: PictureOptions) -> Picture:
     traced = path_letters(scene.mechanism, options.paths)
     others = _ghosts(scene, options.ghosts)
     places = _centre_places(scene) if options.centres else []
-    window, scales = _scaled(scene, window_on(scene, others, traced, places), vectors)
+    plain = window_on(scene, others, traced, places)
+    if options.dimensions and (larger := room_for_dimensions(Painter(scene, plain))) > 1.0:
+        plain = window_on(scene, others, traced, places, larger)
+    window, scales = _scaled(scene, plain, vectors)
     window = room_for_offsets(scene, window) if options.dimensions else window
     painter = Painter(scene, window)
     laid = in_layers(painter)

@@ -47,6 +47,17 @@ DIRECTIONS = 16
 NOTHING, PARALLEL = 1e-6, 1e-4
 # In a sketch of more dimensions two equal ones are one.
 CROWD = 8
+# No sketch is drawn more times larger for the sake of its dimensions.
+LARGER = 1.6
+# So few dimensions have room.
+FEW = 5
+
+
+def room_for_dimensions(painter: Painter) -> float:
+    """Return how many times larger a sketch is drawn so that its dimensions have room."""
+    found = one_of_equals([*guide_dimensions(painter), *link_dimensions(painter)])
+    short = sum(one.is_short for one in found) / max(1, len(found))
+    return float(np.clip(max(np.sqrt(len(found) / CROWD), 1.0 + short), 1.0, LARGER)) if len(found) >= FEW else 1.0
 
 
 def link_dimensions(painter: Painter) -> list[Dimension]:
@@ -84,7 +95,8 @@ def one_of_equals(dimensions: Sequence[Dimension]) -> list[Dimension]:
         if len(ones) < least:
             found += ones
         else:
-            found.append(Dimension(f"{len(ones)}× {text}", tuple(place for one in ones for place in one.places)))
+            places = tuple(place for one in ones for place in one.places)
+            found.append(Dimension(f"{len(ones)}× {text}", places, all(one.is_short for one in ones)))
     return found
 
 
@@ -147,7 +159,7 @@ def length_dimension(
                 places.append(
                     DimensionPlace(at, e, 1.2 * off + 14.0 * abs(share - 0.5) + (side > 0) + beyond / 10.0, shapes)
                 )
-    return Dimension(text, tuple(places))
+    return Dimension(text, tuple(places), beyond > 0.0)
 
 
 def angle_dimension(painter: Painter, at: complex, one: complex, other: complex) -> Iterator[Dimension]:
@@ -225,7 +237,9 @@ BELOW_PIVOT, BESIDE_PIVOT, BEYOND = 24.0, 9.0, 4.0
 # The horizontal line at an inclined guide is so long.
 LEVEL = 60.0
 # A number is so far above its line, and so far beyond a short one.
-ABOVE, AFTER, ROOM = 7.0, 18.0, 4.0
+ABOVE, AFTER, AFTER_LINE, ROOM = 7.0, 18.0, 6.0, 4.0
+# The heads of a shorter line come from outside.
+FROM_OUTSIDE = 22.0
 # The outermost line is so much nearer to the edge than a row.
 EDGE_ROOM = 3.0
 
@@ -277,7 +291,9 @@ def offset_shapes(scene: Scene, window: Window) -> list[Shape]:
 def _line(one: Offset, start: complex, stop: complex, along: complex) -> list[Shape]:
     """One dimension line with its number, beyond its end where it is longer."""
     short = text_width(one.text) + ROOM > abs(stop - start)
-    at = stop + along * (AFTER + text_width(one.text) / 2.0) if short else (start + stop) / 2.0
+    # heads from outside need room
+    after = AFTER if abs(stop - start) <= FROM_OUTSIDE else AFTER_LINE
+    at = stop + along * (after + text_width(one.text) / 2.0) if short else (start + stop) / 2.0
     return [
         *dimension_line(start, stop),
         *dimension_drawing(one.text, DimensionPlace(at - 1j * along * ABOVE, along, 0.0)),
@@ -400,10 +416,14 @@ class DimensionPlace(NamedTuple):
 
 
 class Dimension(NamedTuple):
-    """A dimension, its number and its places. They are in the order of preference."""
+    """A dimension, its number and its places. They are in the order of preference.
+
+    It is short where its number is longer than its line.
+    """
 
     text: str
     places: tuple[DimensionPlace, ...]
+    is_short: bool = False
 
 
 def number_text(value: float, unit: str, *, is_angle: bool = False) -> str:
@@ -493,7 +513,7 @@ def dimension_drawing(text: str, place: DimensionPlace) -> list[Shape]:
 def dimension_line(start: complex, stop: complex) -> list[Shape]:
     """Draw a line with heads at both ends, from outside where it is short."""
     e, length = unit_direction(stop - start), abs(stop - start)
-    inward = 1.0 if length > 22.0 else -1.0
+    inward = 1.0 if length > FROM_OUTSIDE else -1.0
     ends = (start, stop) if inward > 0 else (start - e * 13.0, stop + e * 13.0)
     heads = [
         arrow_head(start, -e * inward, "dimension-head", HEAD),

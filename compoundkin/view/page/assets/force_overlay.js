@@ -9,7 +9,7 @@
   const HALF_LETTER = 3.3, TALL = 6, GAP = 3; // of a name: half a letter, half its height, from what it names
   const TURNS = 16; // directions in which an arc is tried around its place
   const ON_ARROW = 2, ON_LINK = 1; // what an arrow in an arc costs beside its own link
-  const EDGE = 2;
+  const EDGE = 2, PIN = 6;
 
   const unit = ([x, y]) => { const size = Math.hypot(x, y); return size > 1e-9 ? [x / size, y / size] : [0, -1]; };
 
@@ -88,7 +88,7 @@
     draw() {
       const { overlays, layer } = this, { shortest, unit: forces, turning, scale } = this.data;
       const arrows = this.forces.map((one) => [one, ...this.force(one)]).filter(([, , way]) => Math.hypot(...way) >= shortest);
-      const taken = overlays.shown.has("names") ? overlays.centres.taken() : [];
+      const taken = [...(overlays.shown.has("names") ? overlays.centres.taken() : []), ...this.pins()];
       const drawn = (one, value, of) => {
         const group = page.drawn("g", {}, layer);
         page.drawn("title", {}, group).textContent = `${one.told}: ${page.withUnit(Math.abs(value), of)}`;
@@ -114,6 +114,11 @@
       }
       const before = overlays.vectors.length, { keys } = this;
       keys.forEach(([kind, words, long], row) => overlays.key(kind, words, long, before + keys.length - row - 0.5, layer));
+    }
+    // no name stands on a pin
+    pins() {
+      const { player } = this;
+      return Object.keys(player.points).map((letter) => player.paper(player.place(letter))).map(([x, y]) => ({ x, y, half: PIN }));
     }
     // where the middle of an arc crosses the fewest arrows and bars of its link
     free(one, [x, y], radius, arrows) {

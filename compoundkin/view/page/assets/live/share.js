@@ -91,7 +91,9 @@
   };
   // that among the badges has its room from the beginning: what is being dragged must not move
   const head = page.made("li", { class: "original" });
-  head.textContent = rest.length ? "struck out: of the original dimensions" : "changed dimensions";
+  if (!rest.length) head.textContent = "changed dimensions";
+  // on a phone the word alone, beside the badges
+  if (rest.length) for (const [text, kind] of [["struck out: of the ", "long"], ["original", ""], [" dimensions", "long"]]) page.made("span", { class: kind }, head).textContent = text;
   document.querySelector(".badges")?.append(head);
   const noted = () => {
     isNoted = design.isChanged;
