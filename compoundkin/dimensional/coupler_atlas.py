@@ -195,7 +195,7 @@ class CouplerAtlas(ShortRepr):
         """
         from compoundkin.dimensional.atlas_starts import designs_for
 
-        held = [(part.chain, lambda part=part: part.read()[0]) for part in self.parts if part.size]
+        held = [(part.chain, part.designs) for part in self.parts if part.size]
         return designs_for(held, mechanism, ranges, seed)
 
 
