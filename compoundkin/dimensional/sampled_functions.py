@@ -124,20 +124,6 @@ class FunctionChain(CurveChain):
         turns = np.round(np.diff(value, axis=-1) / TURN)
         return value - TURN * np.cumsum(np.pad(turns, ((0, 0), (1, 0))), axis=-1)
 
-    @cached_property
-    def transmissions(self) -> CompiledPath:
-        """The program of the sines of transmission angles of all dyads."""
-        some = self.dimensions(np.zeros((1, len(self.numbers))))
-        names = [f"{group.links[0]}.{TRANSMISSION_INDEX}" for group in decompose(self.mechanism).groups]
-        return compile(self.mechanism, names, free=list(some))
-
-    def passes(self, designs: Number, least: float) -> Number:
-        """Return of which designs, two or more, the transmission angle stays above a least one, (designs,)."""
-        if not least:
-            return np.ones(len(designs), bool)
-        found, clear = self.transmissions.programs.unscreened(Call({CRANK: turn(GRID)}, self.dimensions(designs)))
-        return clear & np.all([each.min(axis=1) >= np.sin(least + BETWEEN) for each in found.values()], axis=0)
-
     def is_drawn(self, designs: Number, values: Number) -> Number:
         """Return which designs are no extremes: near the ranges that are drawn, and their outputs (designs, n) move."""
         low, high = np.array([[np.log(one[1:3]) if one.is_length else one[1:3]] for one in self.numbers]).T
@@ -157,6 +143,22 @@ class FunctionChain(CurveChain):
 
 def _slide(name: str, own: str, at: str, angle: float, offset: float) -> Item:
     return slide(own, on=FRAME, at=at, through="A", angle=angle, offset=offset, name=name)
+
+
+@cache
+def _transmissions(chain: CurveChain) -> CompiledPath:
+    """Return the program of the sines of transmission angles of all dyads of a chain."""
+    some = chain.dimensions(np.zeros((1, len(chain.numbers))))
+    names = [f"{group.links[0]}.{TRANSMISSION_INDEX}" for group in decompose(chain.mechanism).groups]
+    return compile(chain.mechanism, names, free=list(some))
+
+
+def passes(chain: CurveChain, designs: Number, least: float) -> Number:
+    """Return of which designs of a chain, two or more, the transmission angle stays above a least one, (designs,)."""
+    if not least:
+        return np.ones(len(designs), bool)
+    found, clear = _transmissions(chain).programs.unscreened(Call({CRANK: turn(GRID)}, chain.dimensions(designs)))
+    return clear & np.all([each.min(axis=1) >= np.sin(least + BETWEEN) for each in found.values()], axis=0)
 
 
 @cache
@@ -401,7 +403,7 @@ class FittedFunctions(NamedTuple):
         value, by, by_crank = (each[..., at] for each in (value, by, by_crank))
         whole, turns = self.chain.values(double[:, :n], turn(GRID))
         clear = clear & turns & self.chain.is_drawn(double[:, :n], whole)
-        clear = clear & self.chain.passes(double[:, :n], self.wanted.transmission)
+        clear = clear & passes(self.chain, double[:, :n], self.wanted.transmission)
         if not clear.all():  # what is not clear means nothing, and is not taken
             value, by, by_crank = (np.where(clear[:, None], each, 1.0) for each in (value, by, by_crank))
         sign = -1.0 if self.mirrored else 1.0
@@ -447,7 +449,7 @@ def sampled_function(task: FunctionTask) -> Candidates:
         if len(different) < GIVEN and np.isfinite(cost):
             made = found[n].linkage(k)
             kinds = [one.title for one in different]
-            is_new = kinds.count(made.title) < OF_A_KIND and all(_unlike(made, other) for other in different)
+            is_new = kinds.count(made.title) < OF_A_KIND and all(unlike(made, other) for other in different)
             if is_new and isinstance(judged(made, task.conditions, np.inf), SolvedLinkage):
                 different.append(made)
     if not different:  # what comes near is told, with what it misses
@@ -461,9 +463,9 @@ def _begun(part: ChainOutputs, wanted: WantedFunction) -> Iterator[FittedFunctio
     """Yield the designs of a chain whose outputs are nearest, mirrored or not, by their senses."""
     is_angle = part.chain.is_angle
     both = [nearest_outputs(part.values, wanted, is_angle, mirrored) for mirrored in (False, True)]
-    passes = part.chain.passes(part.designs, wanted.transmission)
-    missed = np.concatenate([np.where(passes, one[0], np.inf) for one in both])
-    chosen = np.argsort(missed, kind="stable")[: min(STARTED, 2 * passes.sum())]
+    allowed = passes(part.chain, part.designs, wanted.transmission)
+    missed = np.concatenate([np.where(allowed, one[0], np.inf) for one in both])
+    chosen = np.argsort(missed, kind="stable")[: min(STARTED, 2 * allowed.sum())]
     start, factor = (np.concatenate([one[k] for one in both])[chosen] for k in (1, 2))
     count = len(part.designs)
     for mirrored in (False, True):
@@ -497,7 +499,7 @@ def _moved(parts: list[FittedFunctions], rng: np.random.Generator) -> Iterator[F
         yield part._replace(x=x, cost=np.full(MOVES, np.inf))
 
 
-def _unlike(one: Linkage, other: Linkage) -> bool:
+def unlike(one: Linkage, other: Linkage) -> bool:
     """Return whether two linkages are of different chains, or of other proportions."""
     if one.title != other.title or len(one.lengths) != len(other.lengths):
         return True

@@ -33,6 +33,7 @@ from compoundkin.dimensional.motion_generation import (
 )
 from compoundkin.dimensional.path_generation import mixed_positions, path_points
 from compoundkin.dimensional.sampled_functions import sampled_function
+from compoundkin.dimensional.sampled_motions import sampled_motion
 from compoundkin.dimensional.tasks import (
     ACCURACY,
     COMPACTNESS,
@@ -67,6 +68,7 @@ class Method:
 
 # In this order: the first that fits a task is taken.
 METHODS: tuple[Method, ...] = (
+    Method(PoseTask, sampled_motion, lambda task: task.links > 0),
     Method(PoseTask, five_poses, lambda task: task.count == 5),
     Method(PoseTask, four_poses, lambda task: task.count == 4),
     Method(PoseTask, three_poses, lambda task: task.count == 3),

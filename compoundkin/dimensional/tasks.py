@@ -171,7 +171,7 @@ class PoseTask(Task):
 
     `velocities` are twists (velocity, angular velocity) at some of the poses, by their index: only their ratio counts,
     the pose and one infinitely near are met. `accelerations` are those with the twist of the same pose: three poses
-    infinitely near.
+    infinitely near. With `links` it goes along a course, `closed` or not, led by a linkage of at most so many links.
     """
 
     link: str
@@ -179,6 +179,8 @@ class PoseTask(Task):
     u: Number
     velocities: Mapping[int, tuple[complex, float]] = field(default_factory=dict)
     accelerations: Mapping[int, tuple[complex, float]] = field(default_factory=dict)
+    links: int = 0
+    closed: bool = False
 
     @property
     def count(self) -> int:
@@ -188,6 +190,8 @@ class PoseTask(Task):
     @property
     def in_words(self) -> str:
         """The task as a phrase."""
+        if self.links:
+            return f"{self.link} along {'a closed' if self.closed else 'an open'} course of {self.count} poses"
         near = self.count - len(self.z)
         text = f"{self.link} through {count_phrase(len(self.z), 'pose')}"
         return f"{text}, {near} more infinitely near" if near else text
@@ -367,12 +371,17 @@ def poses(
     *,
     velocities: Any = None,
     accelerations: Any = None,
+    links: int | None = None,
     tolerance: float = 0.0,
 ) -> PoseTask:
     """Return the task of motion generation: a body takes poses, three to five of them exactly.
 
     `poses` is (n, 3): the place of the body's origin and its angle in radians. `velocities` has (x, y, angular
     velocity) by the index of a pose; such a pose counts twice. `accelerations` likewise; it counts three times then.
+
+    With `links`, 4 or 6, eight poses or more are samples of a course that the body goes along, at any speed: closed if
+    its ends meet. Linkages of an atlas with at most so many links, whose crank turns fully, come as near as they can.
+
     Raises InvalidInput for equal poses, too few or too many of them.
 
     >>> poses("plate", [(0, 0, 0), (1, 0, 0.5), (1, 1, 1.0)]).in_words
@@ -380,6 +389,8 @@ def poses(
     """
     _check_body(link)
     z, u = read_poses("poses", poses)
+    if links is not None:
+        return _course(link, z, u, links, bool(velocities or accelerations), _tolerance(tolerance))
     rates = {key: _twists(key, given, len(z)) for key, given in
              (("velocities", velocities), ("accelerations", accelerations))}  # fmt: skip
     lost = sorted(set(rates["accelerations"]) - set(rates["velocities"]))
@@ -388,6 +399,23 @@ def poses(
         raise InvalidInput(Problem("accelerations", what, "give its velocity too"))
     _different("poses", "pose", np.stack([z / extent(z), u], axis=-1))
     return PoseTask(link, z, u, rates["velocities"], rates["accelerations"], tolerance=_tolerance(tolerance))
+
+
+def _course(link: str, z: Number, u: Number, links: int, has_rates: bool, tolerance: float) -> PoseTask:
+    """Return the task of a body along a course. Raises InvalidInput for what is none."""
+    if links not in (4, 6):
+        raise InvalidInput(Problem("links", f"linkages of {links} links are not in the atlas", "take 4 or 6"))
+    if has_rates:
+        raise InvalidInput(Problem("velocities", "a course has its own", "leave them out, or leave links out"))
+    kept = np.append(True, np.diff(z) != 0.0)
+    z, u = z[kept], u[kept]
+    if len(z) < FEWEST_OF_CURVE:
+        what = f"{count_phrase(len(z), 'different place')}: too few for a course"
+        raise InvalidInput(Problem("poses", what, f"give {FEWEST_OF_CURVE} or more, or leave links out"))
+    closed = bool(abs(z[-1] - z[0]) <= max(MEETING * extent(z), NEXT * np.abs(np.diff(z)).max()))
+    if closed and abs(z[-1] - z[0]) <= SAME * extent(z):
+        z, u = z[:-1], u[:-1]
+    return PoseTask(link, z, u, links=links, closed=closed, tolerance=tolerance)
 
 
 @checked
@@ -782,7 +810,7 @@ class _TaskOfFile(NamedTuple):
 
 # Numbers that are angles are degrees in files.
 _KINDS: Mapping[str, _TaskOfFile] = {
-    "poses": _TaskOfFile(poses, ("link", "poses"), ("velocities", "accelerations", "tolerance")),
+    "poses": _TaskOfFile(poses, ("link", "poses"), ("velocities", "accelerations", "links", "tolerance")),
     "points": _TaskOfFile(points, ("points",), ("at", "tolerance")),
     "mixed": _TaskOfFile(mixed, ("poses", "points"), ("link", "tolerance")),
     "curve": _TaskOfFile(curve, ("points",), ("at", "times", "closed", "links", "tolerance")),
