@@ -40,7 +40,8 @@ ICON = (
 # Lines with patterns or templates stay as they are; a stroke between spaces divides. Elsewhere spaces matter only
 # beside signs, as in "a - -b".
 PLAIN, TEXT = re.compile(r"['`\\]|(?<! )/|/(?! )"), re.compile('("[^"]*")')
-SPACES, STOPS = re.compile(r" ?(=>|[=,:;?*{}()\[\]&|]) ?"), re.compile(r"(?<=[:;,{}]) | (?=[{}])")
+SPACES = re.compile(r" (?=[=,:;?*{}()\[\]&|])|(?<=[=,:;?*{}()\[\]&|]) |(?<==>) ")
+STOPS = re.compile(r"(?<=[:;,{}]) | (?=[{}])")
 # A line of comment.
 REMARK = re.compile(r"//.*|/\*[^*]*\*/")
 # A comment at the end of a line without texts.
@@ -69,7 +70,7 @@ def _minified_script(line: str) -> str:
     if PLAIN.search(line):
         return line
     parts = TEXT.split(line)
-    return "".join(part if k % 2 else SPACES.sub(r"\1", part) for k, part in enumerate(parts))
+    return "".join(part if k % 2 else SPACES.sub("", part) for k, part in enumerate(parts))
 
 
 def _minified_style(line: str) -> str:
