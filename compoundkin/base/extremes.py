@@ -111,7 +111,7 @@ class Windows(ShortRepr):
 
     @cached_property
     def _off_at_ends(self) -> Number:
-        off = np.abs(self.polynomials @ AT_ENDS - self.smooth_values[..., [0, -1]])
+        off = np.abs(self.polynomials @ AT_ENDS - self.smooth_values[..., :: len(SAMPLES) - 1])
         # what is unknown or without limit at an end tells nothing
         return np.where(off < np.inf, off, 0.0)
 
@@ -143,7 +143,7 @@ class Windows(ShortRepr):
 
         What varies by no more than rounding of `largest` is greatest from the beginning.
         """
-        c, start = self.polynomials.T, FINE[np.argmax(sign[:, None] * self.fine, axis=-1)]
+        c, start = self.polynomials.T, FINE[self._finest(sign)]
         both = (DERIVATIVES.reshape(-1, INNER) @ c).reshape(INNER - 1, 2, -1)
         spacing = FINE[1] - FINE[0]
         low, high = np.maximum(start - spacing, -1.0), np.minimum(start + spacing, 1.0)
@@ -161,6 +161,12 @@ class Windows(ShortRepr):
         t = np.where(self._sums[..., 0] <= self._rounding(largest), -1.0, t)
         smooth, off = chebyshev.chebval(t, c, tensor=False), sign * self.off
         return t, sign * self._unsquared(smooth - off), sign * self._unsquared(smooth + off)
+
+    def _finest(self, sign: Number) -> Number:
+        """Return where among `FINE` polynomials are greatest, times signs."""
+        if len(sign) and np.all(sign == sign[0]):
+            return self.fine.argmax(axis=-1) if sign[0] > 0.0 else self.fine.argmin(axis=-1)
+        return np.argmax(sign[:, None] * self.fine, axis=-1)
 
     def roots(self) -> Number:
         """Return zeros of polynomials (n, degrees) of opposite signs at their ends, from -1 to 1."""

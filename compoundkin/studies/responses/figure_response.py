@@ -63,18 +63,21 @@ class CourseSearch(ShortRepr):
         number, poses = self.designs.number, self.designs.poses
         parts = refinement_parts(poses)
         if parts == 1:
-            return 1, self.sign * np.broadcast_to(self.designs.outputs[self.name], (number, poses))
+            course = np.broadcast_to(self.designs.outputs[self.name], (number, poses))
+            return 1, -course if self.sign < 0.0 else course
         places = np.broadcast_to(refined_samples(poses), (number, parts * (poses - 1) + 1))
         return parts, self.sign * self.designs.values_at(self.name, np.arange(number), places, self.is_angle)
 
     def _searched(self, parts: int, course: Number) -> tuple[Number, Number]:
         """Return the greatest values and their places: of samples, and of peaks in the windows around them."""
+        # places of extremes are found in less time than their values
         every, k = np.arange(len(course)), course.argmax(axis=1)
-        best, largest = course[every, k], np.abs(course).max(axis=1)
+        best, least = course[every, k], course[every, course.argmin(axis=1)]
+        largest = np.maximum(np.abs(best), np.abs(least))
         offers = [Offers(every, best, k / parts)]
-        rows, k = np.nonzero(_peaks(course))
+        rows, k = np.divmod(np.flatnonzero(_peaks(course, best[:, None])), course.shape[1])
         if len(rows):
-            sought = SoughtPeaks(rows, np.full(len(rows), self.sign), largest[rows], np.ptp(course, axis=1)[rows])
+            sought = SoughtPeaks(rows, np.full(len(rows), self.sign), largest[rows], (best - least)[rows])
             f = DesignCourses(self, rows)
             low, high = np.maximum(k - 1.0, 0.0) / parts, np.minimum(k + 1.0, course.shape[1] - 1.0) / parts
             found = peaks(
@@ -118,18 +121,24 @@ class DesignCourses(ShortRepr):
         return self.search.designs.values_at(self.search.name, self.rows[which], places, self.search.is_angle)
 
 
-def _peaks(course: Number) -> Number:
-    """Return the poses near which the greatest value may be: no neighbour is higher, and the bend is large enough."""
-    rising, poses = np.diff(course, axis=1), course.shape[1]
+def _peaks(course: Number, best: Number) -> Number:
+    """Return the poses near which the greatest value may be: no neighbour is higher, and the bend is large enough.
+
+    `best` are the greatest at the poses, (designs, 1).
+    """
+    rising, poses = course[:, 1:] - course[:, :-1], course.shape[1]
     peak = np.ones(course.shape, dtype=bool)
     peak[:, 1:] &= rising >= 0.0
     peak[:, :-1] &= rising <= 0.0
     if poses < 3:
         return peak
-    bend = np.abs(np.diff(rising, axis=1))
-    added = MOST_ADDED * np.concatenate([bend[:, :1], bend, bend[:, -1:]], axis=1)
-    best = course.max(axis=1, keepdims=True)
-    return peak & (course + added >= best) & (added > ROUNDING * np.abs(best))
+    added = np.empty(course.shape)
+    np.abs(rising[:, 1:] - rising[:, :-1], out=added[:, 1:-1])
+    added[:, 1:-1] *= MOST_ADDED
+    added[:, 0], added[:, -1] = added[:, 1], added[:, -2]
+    peak &= course + added >= best
+    peak &= added > ROUNDING * np.abs(best)
+    return peak
 
 
 # By how much each figure counts the greatest and the least value.
