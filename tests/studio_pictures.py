@@ -17,6 +17,7 @@ from typing import Any
 from PIL import Image
 from playwright.sync_api import sync_playwright
 
+from tests.studio.test_answers import shipped_text
 from tests.view.page.conftest import BROWSERS, FLAGS
 from tests.view.page.test_studio import (
     A,
@@ -88,7 +89,8 @@ def window(title: str) -> Iterator[Window]:
 
 
 def written(name: str, seen: Window) -> None:
-    """Write what the window shows, in few colours."""
+    """Write what the window shows, in few colours; its panels have come by then."""
+    seen.until("document.querySelector('#dimensions-box').hidden || document.querySelector('#dimensions').innerText")
     picture = Image.open(io.BytesIO(seen.view.screenshot())).convert("RGB")
     picture.quantize(64, dither=Image.Dither.NONE).save(FOLDER / f"{name}.png", optimize=True)
 
@@ -145,7 +147,7 @@ def digger() -> None:
         written("studio-cylinders", seen)
 
 
-def gears_and_cam() -> None:
+def gears() -> None:
     with window("Gears") as seen:
         seen.drag((-160, 60), (-160, 0))
         seen.drag((80, 60), (80, -20))
@@ -163,6 +165,57 @@ def gears_and_cam() -> None:
         rested(seen)
         seen.value("() => { studio.pose(30); studio.canvas.fit(); }")
         written("studio-gears", seen)
+
+
+def cam() -> None:
+    """A bar that swings about a fixed point, led by a cam at another."""
+    with window("Cam") as seen:
+        seen.drag((220, 40), (0, -60))
+        seen.press((220, 40), "g")
+        seen.pick((0, 100), "A fixed point here")
+        seen.view.mouse.click(*seen.at((0, 100)))
+        seen.pick((0, -60), "Cam at C that leads B")
+        form = seen.view.locator("dialog")
+        form.get_by_role("button", name="Do it").click()
+        seen.settle()
+        seen.press((0, 100), "d")
+        rested(seen)
+        seen.value("() => { studio.pose(75); studio.canvas.fit(); }")
+        written("studio-cam", seen)
+
+
+def locks() -> None:
+    """The crank's length and the right pivot are locked while the coupler's end is dragged."""
+    with window("Locks") as seen:
+        for start, end in ((A, B), (B, C), (C, D)):
+            seen.drag(start, end)
+        for place, key in ((A, "g"), (D, "g"), (A, "d"), (D, "l"), (middle_of(A, B), "l")):
+            seen.press(place, key)
+        rested(seen)
+        seen.hold(B, (B[0] + 60, B[1] - 10), "Shift")
+        seen.view.wait_for_timeout(500)
+        written("studio-locks", seen)
+        seen.view.mouse.up()
+        seen.view.keyboard.up("Shift")
+        seen.settle()
+
+
+def forces() -> None:
+    """A press of the catalog with its load."""
+    with window("Press") as seen:
+        seen.value(
+            "t => { studio.isFitted = false; studio.isOpened = true; studio.put(t); }",
+            shipped_text("toggle-press-loaded"),
+        )
+        seen.until("studio.isSettled && studio.motion?.poses > 0")
+        seen.view.locator("#show-forces").click()
+        for ask in ("circuits", "forces"):
+            seen.view.locator(f"#results-{ask} > summary").click()
+        seen.until("[...document.querySelectorAll('#results-circuits .branch, #results-forces img')].length > 5")
+        seen.value("() => { studio.pose(60); document.querySelector('#results-circuits').scrollIntoView(); }")
+        seen.view.wait_for_timeout(800)
+        rested(seen)
+        written("studio-forces", seen)
 
 
 def photograph() -> None:
@@ -289,7 +342,7 @@ def film() -> None:
 
 
 PICTURES: dict[str, Callable[[], None]] = {
-    one.__name__: one for one in (drawing, shaper, digger, gears_and_cam, photograph, pen, textbook, film)
+    one.__name__: one for one in (drawing, shaper, digger, gears, cam, locks, forces, photograph, pen, textbook, film)
 }
 
 if __name__ == "__main__":

@@ -100,10 +100,13 @@ def _bar(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
 
 
 def _point(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
-    """Add a point to a link, or one pin to several."""
-    letter, links = sheet.new_letter(), edit.get("links")
+    """Add a point to a link, or one pin to several; to the frame also where there is none yet."""
+    letter, links, place = sheet.new_letter(), edit.get("links"), place_in(edit.get("at"))
     for link in map(str, links) if isinstance(links, list) and links else [word_in(edit, "link")]:
-        sheet.put(link, letter, place_in(edit.get("at")))
+        if link == FRAME:
+            sheet.grounded(letter, place)
+        else:
+            sheet.put(link, letter, place)
     return {"points": [letter]}
 
 

@@ -136,9 +136,10 @@ export class Canvas {
     for (const [xs, ys] of Object.values(this.motion?.points ?? {})) {
       xs.forEach((x, k) => { if (x !== null && k % 6 === 0) points.push([x, ys[k]]); });
     }
-    for (const { at, radius, link } of (this.structure?.pairs ?? []).flatMap((one) => one.shapes ?? []).filter((one) => one.radius)) {
-      const [x, y] = this.structure.origins[link] ?? [0, 0];
-      points.push(...[-1, 1].flatMap((side) => [[x + at[0] + side * radius, y + at[1]], [x + at[0], y + at[1] + side * radius]]));
+    // wheels, and profiles wherever they turn to
+    const round = ({ line, ...shape }) => (line ? { ...shape, at: [0, 0], radius: Math.max(...line[0].map((x, k) => Math.hypot(x, line[1][k]))) } : shape);
+    for (const { at, radius, link } of (this.structure?.pairs ?? []).flatMap((one) => one.shapes ?? []).map(round).filter((one) => one.radius)) {
+      points.push(...[[1, 0], [-1, 0], [0, 1], [0, -1]].map((way) => plus(this.#inPlane(link)(at), way, radius)));
     }
     if (points.length < 2) return;
     const [xs, ys] = [0, 1].map((k) => points.map((one) => one[k]));
@@ -179,10 +180,15 @@ export class Canvas {
     return place && this.screen(place);
   }
 
-  angle(link) {
-    const own = this.pose === null ? null : this.motion?.origins[link];
-    return own ? own[2][this.pose] : this.structure.angles[link] ?? 0;
+  // how a link lies: its origin and its angle. What a drawing does not show, such as a wheel, lies as where it begins.
+  #lying(link) {
+    const { origins, angles } = this.structure, k = this.pose ?? (origins[link] ? null : this.motion?.start);
+    const own = k === null || k === undefined ? null : this.motion?.origins[link];
+    if (own && own[0][k] !== null) return [[own[0][k], own[1][k]], own[2][k]];
+    return [origins[link] ?? this.place(this.link(link)?.points[0]) ?? [0, 0], angles[link] ?? 0];
   }
+
+  angle(link) { return this.#lying(link)[1]; }
 
   // the point of the driven link by which the driver is dragged
   get handle() {
@@ -403,12 +409,15 @@ export class Canvas {
     }
   }
 
+  #inPlane(link) {
+    const [[u, v], turned] = this.#lying(link), [c, s] = [Math.cos(turned), Math.sin(turned)];
+    return ([x, y]) => [u + c * x - s * y, v + s * x + c * y];
+  }
+
   // from the frame of a link to the screen
   #inLink(link) {
-    const own = this.pose === null ? null : this.motion?.origins[link];
-    const origin = own ? [own[0][this.pose], own[1][this.pose]] : this.structure.origins[link] ?? [0, 0];
-    const turned = this.angle(link), [c, s] = [Math.cos(turned), Math.sin(turned)];
-    return ([x, y]) => this.screen([origin[0] + c * x - s * y, origin[1] + s * x + c * y]);
+    const inPlane = this.#inPlane(link);
+    return (at) => this.screen(inPlane(at));
   }
 
   #outline({ link, line, is_closed: isClosed }) {

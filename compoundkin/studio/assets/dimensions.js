@@ -35,7 +35,7 @@ export class Dimensions {
     this.path = new page.Path(reply);
     this.own = this.path.own;
     this.index = new Map(this.path.names.map((name, k) => [name, k]));
-    const size = page.sizeOf(reply.live.dimensions), of = (name) => this.own[this.index.get(name)];
+    const size = (this.size = page.sizeOf(reply.live.dimensions)), of = (name) => this.own[this.index.get(name)];
     const panel = { size, unit: studio.unit, own: of, fixed: reply.live.panel.fixed };
     const rows = reply.live.panel.links.flatMap(({ name, rows: told }) => told.map((one) => new page.PointRow(panel, name, one)).filter((row) => !row.late));
     const numbers = reply.live.panel.pairs.flatMap(({ name, rows: told }) => told.map((one) => new page.NumberRow(panel, name, one)));
@@ -60,8 +60,11 @@ export class Dimensions {
   #of(numbers) { return (name) => numbers[this.index.get(name)]; }
 
   #write(but, numbers = this.own) {
-    for (const { row, input } of this.fields) if (input !== but) input.value = Number(row.get(this.#of(numbers)).toPrecision(7));
+    for (const { row, input } of this.fields) if (input !== but) input.value = this.#rounded(row.get(this.#of(numbers)));
   }
+
+  // what is nothing but rounding is none
+  #rounded(value) { return Math.abs(value) < 1e-9 * this.size ? 0 : Number(value.toPrecision(7)); }
 
   #field(row) {
     const id = `dimension-${row.owner}-${row.label}`.replace(/[^\w-]/g, "_");

@@ -354,6 +354,8 @@ export class Gestures {
       return;
     }
     if (what === "gear" || what === "cam") { this.#pairOf(what); return; }
+    // on the empty ground G makes a fixed point, such as the axis of a cam
+    if (!it && what === "ground" && this.pointer) { studio.edit({ do: "point", link: "frame", at: canvas.snapped(this.pointer).place }); return; }
     if (!it) { studio.say("Choose a point or a bar first: click it"); return; }
     if (what === "point") {
       const here = this.pointer && canvas.chosen?.link ? canvas.linksUnder(this.pointer) : [];
@@ -493,10 +495,11 @@ export class Gestures {
     ];
   }
 
-  #ofGround() {
-    const { canvas } = this, { photo } = canvas, why = photo ? "" : "there is no photograph";
+  #ofGround(at) {
+    const { canvas } = this, { photo } = canvas, why = photo ? "" : "there is no photograph", place = canvas.rounded(canvas.plane(at));
     const shade = (by) => () => { photo.opacity = Math.min(1, Math.max(0.1, photo.opacity + by)); this.#remember(); canvas.draw(); };
     return [
+      { words: "A fixed point here", key: "G", edit: { do: "point", link: "frame", at: place } },
       { words: "Choose all", key: "Ctrl+A", why: canvas.allLetters.length ? "" : "there is nothing", run: () => this.pickAll() },
       { words: "All of it in view", key: "F", run: () => canvas.fit() },
       { words: "A photograph beneath…", run: () => this.studio.part("photo").click() },

@@ -466,6 +466,32 @@ def test_one_bar_grows_alone_locks_hold_and_several_move(window: Any) -> None:
     assert seen.complaints == []
 
 
+def test_a_cam_touches_its_roller_as_drawn_and_is_seen_whole(window: Any) -> None:
+    """Its axis is away from the origin, and no drawing tells how it lies: it lies as where its motion begins."""
+    seen = window()
+    seen.drag((220, 40), (0, -60))
+    seen.press((220, 40), "g")
+    seen.pick((0, 100), "A fixed point here")
+    seen.view.mouse.click(*seen.at((0, 100)))
+    seen.pick((0, -60), "Cam at C that leads B")
+    seen.view.locator("dialog").get_by_role("button", name="Do it").click()
+    seen.settle()
+    seen.press((0, 100), "d")
+    outline = """(() => {
+      const [cam, roller] = ["path.shape", "circle.shape"].map((one) => document.querySelector(`#canvas ${one}`));
+      const places = cam.getAttribute("d").slice(1, -1).split("L");
+      const points = places.map((one) => one.split(" ").map(Number));
+      const [x, y, r] = ["cx", "cy", "r"].map((one) => Number(roller.getAttribute(one)));
+      return [Math.min(...points.map(([u, v]) => Math.hypot(u - x, v - y))) - r, r, cam.getBBox().height];
+    })()"""
+    for pose in ("null", "75"):
+        seen.value(f"() => {{ studio.canvas.pose = {pose}; studio.canvas.fit(); }}")
+        gap, radius, high = seen.value(outline)
+        assert abs(gap) < 0.05 * radius
+        assert 0.3 * seen.value("studio.canvas.size[1]") < high < seen.value("studio.canvas.size[1]")
+    assert seen.complaints == []
+
+
 def test_the_menu_says_why_and_forms_make_gears(window: Any) -> None:
     """What cannot be done is grey, with its reason; Alt takes a bar off; a slide is turned by its grip."""
     seen = window()
