@@ -9,7 +9,12 @@
   const AIR = 0.1; // free space above and below the curves
   const FONT = "13px system-ui, sans-serif";
 
-  const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  // asked once: in the middle of a picture of the screen all styles would be found anew for it
+  const colours = new Map();
+  const colour = (name) => {
+    if (!colours.has(name)) colours.set(name, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+    return colours.get(name);
+  };
   const make = (tag, name, parent) => {
     const element = document.createElement(tag);
     element.className = name;
@@ -230,5 +235,7 @@
     }
   }
 
+  // another theme, or paper
+  Panel.recolour = () => colours.clear();
   page.PlotPanel = Panel;
 })();

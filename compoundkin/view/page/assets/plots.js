@@ -6,6 +6,7 @@
   const place = document.querySelector(".plots");
   if (!player || !place) return;
   const axis = page.plotAxis(player), { signal } = player;
+  const SLICE = 4; // milliseconds of drawing for one picture of the screen
   const { known } = axis;
 
   // --- extremes that the page tells, found between the poses: those of the design it was made of -----------------------
@@ -36,14 +37,32 @@
     pose = k;
     follow();
   });
-  // a changed design is drawn at once where it is seen, elsewhere when it comes into sight
+  // a changed design is drawn where it is seen, as many plots as one picture of the screen has time for, then the next
+  // ones; elsewhere when it comes into sight
+  const waiting = () => panels.filter(({ isBehind, isSeen }) => isBehind && isSeen).sort((a, b) => a.order - b.order);
+  let next = 0;
+  const refresh = () => {
+    next = 0;
+    const begun = performance.now(), [first, ...others] = waiting();
+    first?.refresh();
+    for (const panel of others) {
+      if (performance.now() - begun > SLICE) break;
+      panel.refresh();
+    }
+    // who has waited is first then
+    if (waiting().length) next = requestAnimationFrame(refresh);
+  };
   const seen = new IntersectionObserver((entries) => entries.forEach(({ target, isIntersecting }) => {
     const panel = panels.find(({ figure }) => figure === target);
     if (!panel) return;
     panel.isSeen = isIntersecting;
     if (isIntersecting && panel.isBehind) panel.refresh();
   }), { rootMargin: "20%" });
-  player.design?.on("change", () => panels.forEach((panel) => (panel.isSeen ? panel.refresh() : (panel.isBehind = true))));
+  player.design?.on("change", () => {
+    // those that still wait are drawn before those that were just drawn
+    panels.forEach((panel) => { panel.order = panel.isBehind ? 0 : 1; panel.isBehind = true; });
+    if (!next) refresh();
+  });
   for (const output of player.outputs) add(output.name, false);
   const button = place.querySelector(".add");
   if (button) {
@@ -56,6 +75,7 @@
     follow();
   }), place);
   const paint = () => {
+    page.PlotPanel.recolour();
     for (const panel of panels) {
       if (panel.isBehind) panel.refresh();
       panel.plot.redraw();
@@ -67,6 +87,7 @@
   addEventListener("beforeprint", paint, { signal });
   addEventListener("afterprint", paint, { signal });
   player.atEnd(() => {
+    cancelAnimationFrame(next);
     seen.disconnect();
     for (const { plot, figure } of panels.splice(0)) { plot.destroy(); figure.remove(); }
   });
