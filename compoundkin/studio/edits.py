@@ -177,6 +177,23 @@ def _turn(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     raise UnknownName(Problem(name, "there is no such slide"))
 
 
+def _count(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
+    """Give a number of a gear or a cam another value, where it is written: teeth, the radius of a profile."""
+    name, way, value = word_in(edit, "pair"), edit.get("way"), _positive(edit, "value")
+    if not (isinstance(way, list) and len(way) == 2 and value):
+        raise refused("it is no number above 0", "give pair, way and value")
+    for array, _, table in sheet.tables():
+        holder = table.get(way[0]) if array in ("gears", "cams") and called(table, array) == name else None
+        is_there = way[1] in (0, 1) if isinstance(holder, list) else isinstance(holder, dict) and way[1] in holder
+        if holder is None or not is_there:
+            continue
+        if isinstance(holder, list) and value % 1:
+            raise refused(f"{value:g} teeth cannot be", "give a whole number")
+        holder[way[1]] = int(value) if isinstance(holder, list) else sheet.number(value)
+        return {"pair": name}
+    raise UnknownName(Problem(name, "there is no such number in the text"))
+
+
 def _wheel_at(sheet: EditedDocument, letter: str, word: str, link: Any, carrier: str) -> str:
     """Return the link that turns at a point: the one that is named, one that is a wheel there, or a new wheel."""
     if isinstance(link, str) and link:
@@ -665,6 +682,7 @@ EDITS: Mapping[str, Callable[[EditedDocument, Edit], dict[str, Any]]] = MappingP
         "driver": _driver,
         "slide": _slide,
         "turn": _turn,
+        "count": _count,
         "cylinder": _cylinder,
         "gear": _gear,
         "belt": _belt,

@@ -39,6 +39,8 @@ Reply: TypeAlias = dict[str, Any]
 
 # So many configurations have a picture; of more links than these instant centres are not shown.
 MOST_PICTURES, MOST_CENTRES = 24, 12
+# The radii of profiles, by their keys in the text.
+PROFILES = {"radius": "radius of the disc", "base": "base circle"}
 # So many branches of circuits can be clicked.
 MOST_BRANCHES = 64
 # So many plots are drawn at once.
@@ -92,7 +94,30 @@ def dimensions(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
     poses = motion.failed.shape[1]
     live = LiveData(motion, np.arange(poses), list(motion.mechanism.links), ()).data
     start = int(np.argmax(motion.failed[0] == 0))
-    return {"live": {**live, "toml": None}, "poses": poses, "start": start, "problems": []}
+    counts = list(_counts(shown.structure.mechanism))
+    return {"live": {**live, "toml": None}, "counts": counts, "poses": poses, "start": start, "problems": []}
+
+
+def _counts(mechanism: Mechanism) -> Iterator[Reply]:
+    """Yield numbers of gears and cams that no program has, and that the text has: teeth, the radii of profiles."""
+    from compoundkin.files.writer import document
+
+    for array, tables in document(mechanism).items():
+        for table in tables if array in ("gears", "cams") else ():
+            name, teeth, profile = called(table, array), table.get("teeth"), table.get("profile")
+            links = table.get("first"), table.get("second")
+            for k, count in enumerate(teeth if isinstance(teeth, list) else ()):
+                told = f"teeth of {links[k]}"
+                yield {"pair": name, "way": ["teeth", k], "told": told, "value": count, "is_whole": True}
+            for key, told in PROFILES.items():
+                if isinstance(profile, dict) and isinstance(profile.get(key), int | float):
+                    yield {
+                        "pair": name,
+                        "way": ["profile", key],
+                        "told": told,
+                        "value": profile[key],
+                        "is_whole": False,
+                    }
 
 
 def changed_dimensions(

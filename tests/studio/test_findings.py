@@ -222,3 +222,29 @@ def test_forces_are_those_of_the_analysis() -> None:
     assert (len(found["pictures"]), "crank" in found["html"]) == (2, True)
     assert "crank.effort" in answer(text, {"ask": "results"})["quantities"]
     assert "nothing acts" in answer(shipped_text("six-bar"), {"ask": "forces"})["problems"][0]["what"]
+
+
+def test_teeth_and_radii_of_profiles_are_changed_in_the_text() -> None:
+    """The ratio, the lift of the follower are then those of the other number; what is wrong is refused."""
+    bars = [{"do": "bar", "from": {"at": [x, 0]}, "to": {"at": [x, 20]}} for x in (0, 100)]
+    grounds = [{"do": "ground", "point": one} for one in "AC"]
+    gears = {"do": "gear", "point": "A", "with": "C", "teeth": [20, 40], "first": "bar1", "second": "bar2"}
+    text = edited(START, *bars, *grounds, gears, {"do": "driver", "point": "A"})
+    (_, count) = reply(text, "dimensions")["counts"]
+    assert (count["told"], count["value"], count["is_whole"]) == ("teeth of bar2", 40, True)
+    edit = {"do": "count", "pair": count["pair"], "way": count["way"]}
+    motion = ck.solve(loads(edited(text, {**edit, "value": 50})), {"bar1": [0.0, 0.5]}, order=0)
+    assert np.diff(np.ravel(motion.links["bar2"].angle)) == pytest.approx([-0.5 * 20 / 50])
+    assert "teeth cannot be" in answer(text, {"ask": "edit", "edit": {**edit, "value": 3.5}})["problems"][0]["what"]
+    assert (
+        "no such number"
+        in answer(text, {"ask": "edit", "edit": {**edit, "pair": "x", "value": 3}})["problems"][0]["what"]
+    )
+    cam = shipped_text("disc-cam-offset-roller")
+    (radius,) = reply(cam, "dimensions")["counts"]
+    changed = edited(cam, {"do": "count", "pair": radius["pair"], "way": radius["way"], "value": 40})
+    before, after = (ck.solve(loads(one), order=0).points["P"].position for one in (cam, changed))
+    # the roller's middle goes as a rod of 38 and 48 would lead it
+    crank = 12 * np.exp(1j * np.deg2rad(np.arange(0, 361, 5)))
+    for rod, found in ((38, before), (48, after)):
+        np.testing.assert_allclose(np.abs(np.ravel(found) - crank), rod, atol=1e-6)

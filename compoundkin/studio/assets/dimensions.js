@@ -11,6 +11,23 @@ const asked = (holder, name, make) => {
   Object.defineProperty(holder, name, { configurable: true, enumerable: true, get: () => put(make())[name] });
 };
 
+// A number that the browser's program does not have: teeth, a radius of a profile. It is changed in the text.
+class Count {
+  constructor({ pair, way, told, value, is_whole: isWhole }, unit) {
+    Object.assign(this, { owner: pair, way, label: told, spoken: told, value, isWhole, unit: isWhole ? "" : unit, step: isWhole ? 1 : value / 20 });
+  }
+
+  get() { return this.value; }
+
+  wrong(text) {
+    const value = Number(text);
+    if (!(value > 0)) return "It must be greater than 0.";
+    return this.isWhole && value % 1 ? "It must be a whole number." : "";
+  }
+
+  edit(value) { return { do: "count", pair: this.owner, way: this.way, value }; }
+}
+
 export class Dimensions {
   constructor(root, studio) {
     Object.assign(this, { studio, part: parts(root), fields: [], path: null, own: null, shown: "" });
@@ -39,7 +56,7 @@ export class Dimensions {
     const panel = { size, unit: studio.unit, own: of, fixed: reply.live.panel.fixed };
     const rows = reply.live.panel.links.flatMap(({ name, rows: told }) => told.map((one) => new page.PointRow(panel, name, one)).filter((row) => !row.late));
     const numbers = reply.live.panel.pairs.flatMap(({ name, rows: told }) => told.map((one) => new page.NumberRow(panel, name, one)));
-    this.#rows([...rows, ...numbers], "");
+    this.#rows([...rows, ...numbers, ...reply.counts.map((one) => new Count(one, studio.unit))], "");
   }
 
   // fields stay where the rows are the same, so that who types goes on typing
@@ -92,7 +109,8 @@ export class Dimensions {
       const start = event.clientX, begun = field.row.get(this.#of(this.own));
       label.setPointerCapture(event.pointerId);
       const move = (told) => {
-        input.value = Number((begun + (Math.round((told.clientX - start) / DRAGGED) * field.row.step) / 4).toPrecision(10));
+        const by = field.row.isWhole ? 1 : field.row.step / 4;
+        input.value = Number((begun + Math.round((told.clientX - start) / DRAGGED) * by).toPrecision(10));
         this.#see(field, value());
       };
       const end = () => {
@@ -117,6 +135,7 @@ export class Dimensions {
     const isWrong = !Number.isFinite(value) || row.wrong(String(value));
     input.setAttribute("aria-invalid", String(Boolean(isWrong)));
     if (isWrong) { this.studio.say(row.wrong(String(value)) || "Write a number."); return; }
+    if (row.edit) return;
     const numbers = this.#numbers(row.set(value, this.#of(this.own))), { canvas } = this.studio;
     this.#write(input, numbers);
     this.#move(numbers);
@@ -160,6 +179,10 @@ export class Dimensions {
   #take({ row, input }, value) {
     clearTimeout(this.resting);
     if (!this.path || input.getAttribute("aria-invalid") === "true") return;
+    if (row.edit) {
+      if (value !== row.get()) this.studio.edit(row.edit(value), () => this.#back());
+      return;
+    }
     const values = row.set(value, this.#of(this.own)), isSame = Object.entries(values).every(([name, one]) => one === this.own[this.index.get(name)]);
     if (isSame) return;
     this.studio.edit({ do: "dimensions", values }, () => this.#back());
