@@ -233,6 +233,14 @@ def called(table: Mapping[str, Any], array: str) -> str:
     return str(table.get("name", f"{link} cylinder" if array == "cylinders" else f"{link}/{other}"))
 
 
+def positive_in(edit: Edit, key: str) -> float:
+    """Return a number from 0 on out of a question, 0 where there is none. Raises InvalidInput."""
+    value = edit.get(key, 0)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value) or value < 0:
+        raise InvalidInput(Problem(key, f"{value!r} is no number from 0 on", f"give {key} = 10"))
+    return float(value)
+
+
 def direction_of(sheet: EditedDocument, table: Mapping[str, Any]) -> complex:
     """Return the direction of a slide on the frame or a link, as drawn."""
     through = sheet.place(str(table.get("through")))

@@ -8,10 +8,9 @@ others. What cannot be done is refused with its reason: `InvalidInput`, the docu
 
 from __future__ import annotations
 
-import cmath
 from collections.abc import Callable, Mapping
 from itertools import count
-from math import degrees, floor, isfinite, log10
+from math import floor, isfinite, log10
 from types import MappingProxyType
 from typing import Any
 
@@ -34,15 +33,14 @@ from compoundkin.studio.edited_document import (
     word_in,
 )
 from compoundkin.studio.moves import lengthen, move
+from compoundkin.studio.wheels import belt, cam_pair, gear, rack, stated_number
 
 # A driven slide goes so far to both sides of where it is drawn, in parts of the drawing's size, in so many steps.
 TRAVEL, STEPS = 0.25, 60
 # What is called so where nothing else has the name.
-BAR, BLOCK, CYLINDER, WHEEL, CAM = "bar", "block", "cylinder", "wheel", "cam"
+BAR, BLOCK, CYLINDER = "bar", "block", "cylinder"
 # A cylinder that is driven goes from so much to so much of its drawn length.
 CYLINDER_RANGE = 0.85, 1.25
-# A follower of a cam dwells in the turn that its rise and its return leave.
-TURN = 360.0
 
 
 def edited(document: Document, edit: Edit, drawing: Placement) -> dict[str, Any]:
@@ -177,186 +175,11 @@ def _turn(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     raise UnknownName(Problem(name, "there is no such slide"))
 
 
-def _count(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
-    """Give a number of a gear or a cam another value, where it is written: teeth, the radius of a profile."""
-    name, way, value = word_in(edit, "pair"), edit.get("way"), _positive(edit, "value")
-    if not (isinstance(way, list) and len(way) == 2 and value):
-        raise refused("it is no number above 0", "give pair, way and value")
-    for array, _, table in sheet.tables():
-        holder = table.get(way[0]) if array in ("gears", "cams") and called(table, array) == name else None
-        is_there = way[1] in (0, 1) if isinstance(holder, list) else isinstance(holder, dict) and way[1] in holder
-        if holder is None or not is_there:
-            continue
-        if isinstance(holder, list) and value % 1:
-            raise refused(f"{value:g} teeth cannot be", "give a whole number")
-        holder[way[1]] = int(value) if isinstance(holder, list) else sheet.number(value)
-        return {"pair": name}
-    raise UnknownName(Problem(name, "there is no such number in the text"))
-
-
-def _wheel_at(sheet: EditedDocument, letter: str, word: str, link: Any, carrier: str) -> str:
-    """Return the link that turns at a point: the one that is named, one that is a wheel there, or a new wheel."""
-    if isinstance(link, str) and link:
-        if link not in sheet.carriers(letter):
-            raise refused(f"{link} has no point {letter}", "name a link that turns there")
-        return link
-    for name in sheet.carriers(letter):
-        if name not in (FRAME, carrier) and len(sheet.points(name)) == 1 and not sheet.is_block(name):
-            return name
-    name = sheet.new_name(word)
-    sheet.links[name] = {"points": [letter] if sheet.is_as_drawn else {letter: [0, 0]}}
-    return name
-
-
-def _wheels(sheet: EditedDocument, edit: Edit, array: str) -> dict[str, Any]:
-    """Return the table of two wheels at two points of one link: on links that turn there, or wheels of their own."""
-    one, two = word_in(edit, "point"), word_in(edit, "with")
-    if one == two:
-        raise refused("two wheels have two axes", "choose two points")
-    both = [name for name in sheet.carriers(one) if name in sheet.carriers(two)]
-    if not both:
-        raise refused(f"no link carries both {one} and {two}", "ground both, or choose two points of one bar")
-    first = _wheel_at(sheet, one, WHEEL, edit.get("first"), both[0])
-    second = _wheel_at(sheet, two, WHEEL, edit.get("second"), both[0])
-    for name, _, other in sheet.tables():
-        if name == array and {other.get("first"), other.get("second")} == {first, second}:
-            raise refused(f"{first} and {second} are joined so already", "delete that pair first")
-    return {"first": first, "second": second} | ({} if both[0] == FRAME else {"carrier": both[0]})
-
-
-def _gear(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
-    """Put two gears at two points of one link, by their teeth."""
-    teeth = edit.get("teeth")
-    if not (isinstance(teeth, list) and len(teeth) == 2 and all(isinstance(n, int) and 0 < n < 1e6 for n in teeth)):
-        raise refused(f"{teeth!r} are no numbers of teeth", "give two whole numbers")
-    table = _wheels(sheet, edit, "gears") | {"teeth": teeth}
-    if edit.get("internal"):
-        if teeth[0] >= teeth[1]:
-            raise refused("a ring has more teeth than the gear in it", "choose the gear first, and more teeth second")
-        table["internal"] = True
-    sheet.document.setdefault("gears", []).append(table)
-    return {"link": table["first"]}
-
-
-def _belt(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
-    """Lead a belt around two pulleys at two points of one link, by their radii; open or crossed."""
-    radii = edit.get("radii")
-    if not (isinstance(radii, list) and len(radii) == 2):
-        raise refused(f"{radii!r} are no radii", "give two")
-    sizes = [_positive({"radii": one}, "radii") for one in radii]
-    if not all(sizes):
-        raise refused("a pulley has a radius", "give two numbers above 0")
-    table = _wheels(sheet, edit, "belts") | {"radii": [sheet.number(one) for one in sizes]}
-    apart = abs(sheet.place(word_in(edit, "point")) - sheet.place(word_in(edit, "with")))
-    least = sum(sizes) if edit.get("crossed") else abs(sizes[0] - sizes[1])
-    if apart <= least:
-        raise refused("the pulleys lie in each other", f"the axes are {sheet.number(apart)} apart")
-    sheet.document.setdefault("belts", []).append(table | ({"crossed": True} if edit.get("crossed") else {}))
-    return {"link": table["first"]}
-
-
-def _rack(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
-    """Let a pinion at a fixed point roll on what slides at another: the rack's pitch line is that of its guide."""
-    axis, letter = word_in(edit, "point"), word_in(edit, "with")
-    if FRAME not in sheet.carriers(axis):
-        raise refused(f"{axis} is not fixed", "ground it first (key G)")
-    rack = next((name for name in sheet.carriers(letter) if name != FRAME and sheet.is_block(name)), None)
-    slide = next((t for name, _, t in sheet.tables() if name == "slides" and t.get("link") == rack), None)
-    if rack is None or slide is None or slide.get("on", FRAME) != FRAME:
-        raise refused(f"{letter} does not slide on the frame", "let it slide first (key S)")
-    along = direction_of(sheet, slide)
-    away = ((sheet.place(axis) - sheet.place(letter)) * along.conjugate()).imag
-    if abs(away) <= 1e-9 * sheet.drawing.size:
-        raise refused(f"{axis} is on the guide of {letter}", "a pinion has a radius: move one of them")
-    angle = degrees(cmath.phase(along / sheet.drawing.poses.get(rack, (0j, 1 + 0j))[1]))
-    pinion = _wheel_at(sheet, axis, WHEEL, edit.get("pinion"), FRAME)
-    table: dict[str, Any] = {"rack": rack, "pinion": pinion, "at": axis, "through": letter}
-    table |= {"radius": sheet.number(abs(away))} | ({"side": -1} if away < 0 else {})
-    table |= {"angle": sheet.number(angle)} if round(angle, DIGITS) else {}
-    sheet.document.setdefault("racks", []).append(table)
-    return {"link": pinion}
-
-
-def _cam(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
-    """Put a cam at a fixed point that leads another point: a disc, or the profile for a rise and a return."""
-    axis, letter = word_in(edit, "point"), word_in(edit, "with")
-    if FRAME not in sheet.carriers(axis):
-        raise refused(f"{axis} is not fixed", "ground it first (key G)")
-    centre, place = sheet.place(axis), sheet.place(letter)
-    numbers = {k: _positive(edit, k) for k in ("radius", "roller")}
-    gap = abs(place - centre)
-    if gap <= 1e-9 * sheet.drawing.size:
-        raise refused(f"{letter} is at {axis}", "choose a point away from it")
-    follower = next((n for n in sheet.carriers(letter) if n != FRAME and sheet.is_block(n)), "")
-    follower = follower or next((n for n in sheet.carriers(letter) if n != FRAME), "")
-    if not follower:
-        raise refused(f"{letter} is on the frame", "choose a point that slides or swings")
-    cam = _wheel_at(sheet, axis, CAM, None, FRAME)
-    table: dict[str, Any] = {"link": follower, "on": cam, "at": letter}
-    if numbers["roller"]:
-        table["radius"] = sheet.number(numbers["roller"])
-    if edit.get("kind") == "disc":
-        eccentric = _positive(edit, "rise") / 2
-        table["profile"] = {"kind": "disc", "radius": sheet.number(numbers["radius"]),
-                            "middle": [sheet.number(eccentric), 0]}  # fmt: skip
-    else:
-        table["profile"] = _made_profile(sheet, edit, (axis, letter, follower), numbers)
-    sheet.document.setdefault("cams", []).append(table)
-    return {"link": cam}
-
-
-def _made_profile(
-    sheet: EditedDocument, edit: Edit, at: tuple[str, str, str], numbers: Mapping[str, float]
-) -> dict[str, Any]:
-    """Return the profile for a motion: a rise, a dwell, the return, a dwell; of a slide, or of a bar that swings."""
-    axis, letter, follower = at
-    rise, over, dwell, back = (_positive(edit, key) for key in ("rise", "over", "dwell", "back"))
-    rest = TURN - over - dwell - back
-    if min(rise, over, back) <= 0 or rest < 0:
-        raise refused("rise, dwell and return are no part of a turn", f"together at most {TURN:g} degrees")
-    law = "cycloidal"
-    parts = [(over, rise), (dwell, 0.0), (back, -rise), (rest, 0.0)]
-    number = sheet.number
-    program = [
-        {"law": law, "over": number(long), "rise": number(by)} if by else {"law": "dwell", "over": number(long)}
-        for long, by in parts
-        if long
-    ]
-    made = {"kind": "made", "program": program, "base": number(numbers["radius"])}
-    made |= {"follower": "roller", "roller": number(numbers["roller"])} if numbers["roller"] else {}
-    centre, place = sheet.place(axis), sheet.place(letter)
-    slide = next((t for name, _, t in sheet.tables() if name == "slides" and t.get("link") == follower), None)
-    if slide is not None:
-        if slide.get("on", FRAME) != FRAME:
-            raise refused(f"{follower} does not slide on the frame", "choose another point")
-        along = direction_of(sheet, slide)
-        through = sheet.place(slide["through"])
-        # a guide beside the axis is one beside the cam's middle
-        away = ((through - centre) * along.conjugate()).imag
-        if ((place - centre) * along.conjugate()).real < 0:
-            raise refused("it slides toward the cam", "turn the slide by 180 degrees")
-        return made | {"angle": round(degrees(cmath.phase(along)), DIGITS) + 0.0, "offset": number(away)}
-    pivot = next((k for k in sheet.points(follower) if k != letter and sheet.is_fixed(k)), None)
-    if pivot is None:
-        raise refused(f"{follower} neither slides on the frame nor turns about a fixed point", "ground its end")
-    arm, to = place - sheet.place(pivot), sheet.place(pivot) - centre
-    side = 1 if ((place - centre) * arm.conjugate()).imag >= 0 else -1
-    return made | {"pivot": sheet.pair(to), "arm": number(abs(arm)), "side": side}
-
-
 def _angle_in(value: Any) -> float:
     """Return an angle out of a question, degrees. Raises InvalidInput."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
         raise InvalidInput(Problem("angle", f"{value!r} is no angle", "give degrees"))
     return value
-
-
-def _positive(edit: Edit, key: str) -> float:
-    """Return a number from 0 on out of a question, 0 where there is none. Raises InvalidInput."""
-    value = edit.get(key, 0)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value) or value < 0:
-        raise InvalidInput(Problem(key, f"{value!r} is no number from 0 on", f"give {key} = 10"))
-    return float(value)
 
 
 def _all(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
@@ -682,12 +505,12 @@ EDITS: Mapping[str, Callable[[EditedDocument, Edit], dict[str, Any]]] = MappingP
         "driver": _driver,
         "slide": _slide,
         "turn": _turn,
-        "count": _count,
+        "count": stated_number,
         "cylinder": _cylinder,
-        "gear": _gear,
-        "belt": _belt,
-        "rack": _rack,
-        "cam": _cam,
+        "gear": gear,
+        "belt": belt,
+        "rack": rack,
+        "cam": cam_pair,
         "delete": _delete,
         "call": _call,
         "all": _all,
