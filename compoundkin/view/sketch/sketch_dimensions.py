@@ -48,7 +48,9 @@ NOTHING, PARALLEL = 1e-6, 1e-4
 # In a sketch of more dimensions two equal ones are one.
 CROWD = 8
 # No sketch is drawn more times larger for the sake of its dimensions.
-LARGER = 1.6
+LARGER = 2.0
+# Where all numbers are longer than their lines it is larger by this.
+PER_SHORT = 1.5
 # So few dimensions have room.
 FEW = 5
 
@@ -57,7 +59,11 @@ def room_for_dimensions(painter: Painter) -> float:
     """Return how many times larger a sketch is drawn so that its dimensions have room."""
     found = one_of_equals([*guide_dimensions(painter), *link_dimensions(painter)])
     short = sum(one.is_short for one in found) / max(1, len(found))
-    return float(np.clip(max(np.sqrt(len(found) / CROWD), 1.0 + short), 1.0, LARGER)) if len(found) >= FEW else 1.0
+    return (
+        float(np.clip(max(np.sqrt(len(found) / CROWD), 1.0 + PER_SHORT * short), 1.0, LARGER))
+        if len(found) >= FEW
+        else 1.0
+    )
 
 
 def link_dimensions(painter: Painter) -> list[Dimension]:
