@@ -301,6 +301,7 @@ def some_edit(dice: random.Random, reply: dict[str, Any]) -> dict[str, Any]:
         "points": {dice.choice(points): [7, 8]},
         "locks": [{"what": dice.choice(["length", "point"]), "points": points[:2]}],
         "edits": [{"do": "ground", "point": dice.choice(points)}],
+        "radii": [20, 5], "way": dice.choice([["teeth", 0], ["profile", "base"], [1]]), "value": 7,
     }  # fmt: skip
 
 
@@ -308,7 +309,7 @@ def some_edit(dice: random.Random, reply: dict[str, Any]) -> dict[str, Any]:
 def test_random_edits_never_raise_and_keep_every_comment_and_unknown_key(name: str) -> None:
     text = (shipped_text(name) if name else START).replace("format = 1", "format = 1  # kept\nunknown = 7", 1)
     dice, made = random.Random(f"edits {name}"), 0
-    for _ in range(15 if name else 40):
+    for _ in range(17 if name else 40):
         reply = structure(text)
         edit = some_edit(dice, reply)
         pose = dice.choice([None, 3])
