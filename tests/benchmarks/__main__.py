@@ -102,9 +102,17 @@ def six_bar_rows() -> Iterator[Row]:
     some = np.linspace(0.0, 2 * np.pi, LOOPED)
     loop = {"program": lambda: path({"crank": some}, speed=six_bar.SPEED), "fsolve": lambda: six_bar.by_fsolve(some)}
     yield from compared(f"six-bar, {LOOPED} poses, each", loop, LOOPED, 3, "program")
-    one = np.array([0.7])
-    calls = {"one pose": lambda: path({"crank": one}, speed=six_bar.SPEED), "a number": lambda: path(0.7, speed=10.0)}
-    yield from compared("a call of the six-bar's program", calls, 1, 300, "one pose")
+    few, one = np.linspace(0.0, 2 * np.pi, FEW), np.array([0.7])
+    listed, earlier, at = few.tolist(), path(few, speed=six_bar.SPEED), few / six_bar.SPEED
+    calls = {
+        "an array": lambda: path(few, speed=six_bar.SPEED),
+        "a list": lambda: path(listed, speed=six_bar.SPEED),
+        "times": lambda: path(0.0, speed=six_bar.SPEED, time=at),
+        "into an earlier result": lambda: path(few, speed=six_bar.SPEED, out=earlier),
+        "one pose": lambda: path(one, speed=six_bar.SPEED),
+        "a number": lambda: path(0.7, speed=six_bar.SPEED),
+    }
+    yield from compared(f"a call of the six-bar's program, {FEW} poses", calls, 1, 300, "an array")
 
 
 def _kept_rows(path: ck.results.CompiledPath, crank: Any, rounds: int) -> Iterator[Row]:
@@ -152,6 +160,21 @@ def rival(name: str, count: int) -> Callable[[], Any]:
         kernel = four_bar.by_pylinkage(2)
         return lambda: kernel(count)
     return rivals.BY[name](count)
+
+
+def study_rows() -> Iterator[Row]:
+    """Rows of studies: a sum over 36 poses, and figures between the poses."""
+    from tests.benchmarks import studies  # late: it prints by what is here
+
+    count = 2**17
+    wanted: dict[str, Any] = {
+        "a sum over the poses": (studies.ERROR, studies.TURN),
+        "two extremes between them": (["P.y.greatest", "P.x.least"], studies.CYCLE),
+        "a stroke and a least angle": (["rocker.angle.stroke", "coupler.transmission_angle.least"], studies.CYCLE),
+    }
+    programs = {name: studies.program(outputs, count, values) for name, (outputs, values) in wanted.items()}
+    subjects = {name: lambda own=own: own.rows(range(count)) for name, own in programs.items()}  # type: ignore[misc]
+    yield from compared("a row of a study at 36 poses, with states", subjects, count, 3, "a sum over the poses")
 
 
 def force_rows() -> Iterator[Row]:
@@ -232,7 +255,7 @@ def main() -> None:
     save = parser.parse_args().save
     print(f"On {machine()}.\n\n{HEAD}")
     rows = []
-    for part in (six_bar_rows, four_bar_rows, force_rows, start_rows, growth_rows):
+    for part in (six_bar_rows, four_bar_rows, study_rows, force_rows, start_rows, growth_rows):
         for one in part():
             rows.append(f"| {' | '.join(one)} |")
             print(rows[-1], flush=True)
