@@ -23,8 +23,7 @@ CHANGED: dict[str, dict[str, float]] = {
     "whitworth-quick-return": {"crank.A.x": 3.0, "rod.R.x": 7.0},
     # a searched profile
     "oscillating-roller-follower": {"follower/cam.radius": 2.0, "frame.H.x": 1.5},
-    # forces: a table over the driver, one over a slide that acts one way, uniform bars and a plate as masses
-    "engine-gas-pressure": {"crank.A.x": 0.002, "rod.B.x": 0.01},
+    # forces: a table over a slide that acts one way, uniform bars and a plate as masses
     "geared-press": {"crank.A.x": -4.0, "rod.B.x": -3.0},
     "jaw-crusher-loaded": {"pitman.B.x": 8.0, "jaw.D.y": -5.0},
 }
