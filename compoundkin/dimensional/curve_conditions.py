@@ -25,6 +25,8 @@ from compoundkin.structure import decompose
 
 # Poses of a turn at which conditions are looked at, and designs whose motion is looked at together.
 POSES, TOGETHER = 64, 256
+# Steps of a refinement keep so much more of a transmission angle (radians), for what lies between poses.
+BETWEEN = 0.01
 
 
 class LaidDesigns(NamedTuple):
@@ -122,6 +124,14 @@ class CurveConditions(NamedTuple):
                 for obstacle in self.wanted.obstacles:
                     held[held] &= ~meets(at[a][held], at[b][held], obstacle).any(axis=1)
         return held
+
+
+def keeps_transmission(chain: CurveChain, designs: Number, least: float) -> Number:
+    """Return of which designs of a chain, two or more, the transmission angles stay above a least one, (designs,)."""
+    if not least:
+        return np.ones(len(designs), bool)
+    found, clear = _indices(chain).programs.unscreened(Call({CRANK: turn(POSES)}, chain.dimensions(designs)))
+    return clear & np.all([each.min(axis=1) >= np.sin(least + BETWEEN) for each in found.values()], axis=0)
 
 
 def bars(links: Mapping[str, Iterable[str]]) -> Iterator[tuple[str, str]]:

@@ -29,6 +29,7 @@ from compoundkin.dimensional.coupler_atlas import (
 from compoundkin.dimensional.curve_chains import CurveChain, Laying, turn
 from compoundkin.dimensional.curve_conditions import CurveConditions, LaidDesigns
 from compoundkin.dimensional.defects import Rejection, SolvedLinkage, judged
+from compoundkin.dimensional.design_refinement import FIRST, MOVED, alike, refined, scattered
 from compoundkin.dimensional.tasks import Conditions, CurveTask, CurveTiming
 
 # Designs of the atlas, how many of them are refined, how many answers are given beside so many of each number of links,
@@ -36,12 +37,8 @@ from compoundkin.dimensional.tasks import Conditions, CurveTask, CurveTiming
 DESIGNS, STARTED, GIVEN, SIMPLE, OF_A_KIND = 200_000, 200, 6, 2, 3
 # Verdicts on linkages, at most.
 MOST_JUDGED = 40
-# Lengths that differ by less than this part make no other linkage.
-ALIKE = 0.1
 # Rounds in which what remains farther than this sum of squares is moved and grown.
 ROUNDS, NEAR = 3, 2e-4
-# How many of the best are moved, to how many places each, and how far, from and to.
-MOVED, MOVES, MOVED_BY = 8, 8, (0.02, 0.4)
 # How many of the best grow, not more of a chain than this; the dyads that are drawn for each pair of links and mode,
 # and how many of the most promising are taken of each, and of all.
 GROWN, OF_A_CHAIN, DRAWN, TAKEN, MOST_TAKEN = 5, 3, 256, 3, 10
@@ -56,12 +53,10 @@ POSES, PLACES = 128, 128
 # Steps with places by arc length, none in later rounds; steps of all designs to the nearest places, more steps of the
 # best so many, and the last of what is given.
 EARLY, FIRST_STEPS, STEPS, BEST, LAST = 12, 15, 40, 24, 40
-# The first weight of Levenberg's term, how it shrinks and grows, its least, and where a design is given up.
-FIRST, EASIER, HARDER, LEAST, HOPELESS = 1e-2, 0.3, 4.0, 1e-7, 1e5
 # A step that gains less than this part counts as a failed one.
-SETTLED, SLOWER = 1e-4, 30.0
-# Added to the diagonal: sizes of chains without a fixed length are free. No number goes farther in a step.
-FLOOR, FARTHEST = 1e-6, 0.5
+SETTLED = 1e-4
+# Added to the diagonal of the normal equations: sizes of chains without a fixed length are free.
+FLOOR = 1e-6
 # The part of residuals along the curve: it keeps places from gliding without end.
 ALONG = 0.1
 # Added to lengths that are divided by, in the target's RMS radius.
@@ -194,34 +189,17 @@ class _RefinedDesigns(NamedTuple):
 
         No step is taken that comes to a limit, or from where conditions hold to where they do not.
         """
-        now = self._replace(x=self.x.copy())
-        r, j, clear = _residuals(now, early)
-        cost, held = np.where(clear, (r**2).sum(axis=1), np.inf), now.held
-        damping = np.full(len(now.x), FIRST)
-        for _ in range(steps):
-            alive = np.flatnonzero(damping < HOPELESS)
-            if not len(alive):
-                break
-            ahead = now.best(alive)
-            ahead = ahead._replace(
-                x=ahead.x - np.clip(_levenberg(r[alive], j[alive], damping[alive]), -FARTHEST, FARTHEST)
-            )
-            tried, steep, clear = _residuals(ahead, early)
-            costs = (tried**2).sum(axis=1)
-            better = np.flatnonzero(clear & (costs < cost[alive]))
-            holds = ahead.best(better).held
-            kept = holds | ~held[alive[better]]
-            better, to = better[kept], alive[better[kept]]
-            gain = 1.0 - costs[better] / cost[to]
-            held[to] = holds[kept]
-            now.x[to], r[to], j[to], cost[to] = ahead.x[better], tried[better], steep[better], costs[better]
-            factor = np.full(len(alive), HARDER)
-            factor[better] = EASIER
-            damping[alive] = np.clip(damping[alive] * factor, LEAST, 2.0 * HOPELESS)
-            damping[to[gain < SETTLED]] *= SLOWER
-        return now._replace(cost=cost)
 
-    def best(self, kept: Number) -> _RefinedDesigns:
+        def residuals(x: Number, rows: Number) -> tuple[Number, Number, Number]:
+            return _residuals(self.some(rows)._replace(x=x), early)
+
+        def holds(x: Number, rows: Number) -> Number:
+            return self.some(rows)._replace(x=x).held
+
+        x, cost = refined(self.x, residuals, steps, FLOOR, holds=holds, settled=SETTLED)
+        return self._replace(x=x, cost=cost)
+
+    def some(self, kept: Number) -> _RefinedDesigns:
         """Return some of them."""
         return self._replace(mirrored=self.mirrored[kept], x=self.x[kept], cost=self.cost[kept])
 
@@ -262,7 +240,7 @@ def _judge(
     for made, is_rest in _linkages(found, rest):
         if not wanted or len(verdicts) > MOST_JUDGED:
             break
-        if any(not _unlike(made, other.candidate) for other in verdicts):
+        if any(alike(made, other.candidate, at_any_size=False) for other in verdicts):
             continue
         if kinds[made.title] >= OF_A_KIND and not is_rest:
             rest.append(made)
@@ -278,13 +256,6 @@ def _linkages(found: Sequence[FittedCurve], rest: list[Linkage]) -> Iterator[tup
     """Yield linkages, then those that have been put to the rest meanwhile."""
     yield from ((one.linkage, False) for one in found)
     yield from ((made, True) for made in rest)
-
-
-def _unlike(one: Linkage, other: Linkage) -> bool:
-    """Return whether two linkages are of different chains, or of other sizes."""
-    if one.title != other.title or len(one.lengths) != len(other.lengths):
-        return True
-    return not np.allclose(one.lengths, other.lengths, rtol=ALIKE)
 
 
 def fitted(
@@ -316,8 +287,8 @@ def _refined(begun: Iterable[_RefinedDesigns], early: int = EARLY) -> list[_Refi
     refined = list[_RefinedDesigns]()
     for part in parts:
         to_end = part.cost <= costs[:BEST][-1]
-        refined += [part.best(to_end).refined(STEPS)] if to_end.any() else []
-        refined += [part.best(~to_end)] if not to_end.all() else []
+        refined += [part.some(to_end).refined(STEPS)] if to_end.any() else []
+        refined += [part.some(~to_end)] if not to_end.all() else []
     return refined
 
 
@@ -335,7 +306,7 @@ def _best(parts: Sequence[_RefinedDesigns]) -> list[_RefinedDesigns]:
             cost = one.cost[order]
             order = order[apart & ((cost <= least) | (np.arange(len(order)) == 0)) & np.isfinite(cost)]
             if len(order):
-                found.append(one.best(order))
+                found.append(one.some(order))
     return found
 
 
@@ -345,7 +316,7 @@ def _given(found: Sequence[_RefinedDesigns]) -> list[_RefinedDesigns]:
     for links in sorted({part.chain.links for part in found}):
         own = [part for part in found if part.chain.links == links]
         least = np.sort(np.concatenate([part.cost for part in own]))[:KEPT][-1]
-        given += [part.best(part.cost <= least) for part in own if part.cost.min() <= least]
+        given += [part.some(part.cost <= least) for part in own if part.cost.min() <= least]
     return given
 
 
@@ -367,20 +338,18 @@ def _nearest(parts: Sequence[_RefinedDesigns], count: int) -> Iterator[_RefinedD
     """Yield the best designs of all, one by one, not many of a chain."""
     order = sorted((part.cost[k], n, k) for n, part in enumerate(parts) for k in range(min(len(part.x), OF_A_CHAIN)))
     for _, n, k in order[:count]:
-        yield parts[n].best(np.array([k]))
+        yield parts[n].some(np.array([k]))
 
 
 def _moved(found: Sequence[_RefinedDesigns], rng: np.random.Generator) -> list[_RefinedDesigns]:
     """Return the best designs, each moved to several places about."""
     moved = list[_RefinedDesigns]()
     for one in _nearest(found, MOVED):
-        low, high = np.log(MOVED_BY)
-        far = np.exp(low + (high - low) * rng.random((MOVES, 1)))
-        around = one.x + far * rng.standard_normal((MOVES, one.x.shape[1]))
+        around = scattered(one.x, rng)
         if one.target.timing is not None and one.target.timing.turn:
             around[:, -5] = one.x[:, -5]
-        moved.append(one.fresh(one.chain, one.target, np.repeat(one.mirrored, MOVES), around))
-    return [part.best(clear) for part in _by_chain(moved) if (clear := part.chain.curves(part.designs, POSES)[1]).any()]
+        moved.append(one.fresh(one.chain, one.target, np.repeat(one.mirrored, len(around)), around))
+    return [part.some(clear) for part in _by_chain(moved) if (clear := part.chain.curves(part.designs, POSES)[1]).any()]
 
 
 def _grown(found: Sequence[_RefinedDesigns], links: int, rng: np.random.Generator) -> list[_RefinedDesigns]:
@@ -473,15 +442,6 @@ def _laid(part: _RefinedDesigns) -> Iterator[FittedCurve]:
         size, middle = (np.conj(each) if is_mirrored else each for each in (target.size, target.middle))
         laying = Laying(scale * size, place * size + middle, is_mirrored)
         yield FittedCurve(part.chain, x[:n], laying, apart, apart * abs(size) / 2.0, window, target.timing)
-
-
-def _levenberg(r: Number, j: Number, damping: Number) -> Number:
-    """Return the steps (designs, numbers) that residuals ask for."""
-    across = np.swapaxes(j, 1, 2)
-    normal, slope = across @ j, across @ r[:, :, None]
-    diagonal, more = np.arange(normal.shape[1]), 1.0 + damping[:, None]
-    normal[:, diagonal, diagonal] = (normal[:, diagonal, diagonal] + FLOOR) * more
-    return np.linalg.solve(normal, slope)[:, :, 0]
 
 
 def _scale_and_place(x: Number) -> tuple[Number, Number]:

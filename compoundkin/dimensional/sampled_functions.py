@@ -11,7 +11,7 @@ Kinematics, McGraw-Hill 1967, chapter 18).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, lru_cache
 from typing import NamedTuple
@@ -39,16 +39,23 @@ from compoundkin.dimensional.curve_chains import (
     Laying,
     turn,
 )
-from compoundkin.dimensional.defects import SolvedLinkage, judged
+from compoundkin.dimensional.curve_conditions import keeps_transmission
+from compoundkin.dimensional.design_refinement import (
+    GIVEN,
+    best_moved,
+    best_refined,
+    different_verdicts,
+    ranked,
+    refined,
+)
 from compoundkin.dimensional.tasks import FunctionTask
-from compoundkin.model.attributes import ANGLE, TRANSMISSION_INDEX, VALUE, component_names
+from compoundkin.model.attributes import ANGLE, VALUE, component_names
 from compoundkin.model.elements import Item, drive, link, mode
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import slide
 from compoundkin.programs.call_numbers import Call
 from compoundkin.programs.compiled_path import CompiledPath, compile
-from compoundkin.structure import decompose
 from compoundkin.studies.samples.random_samples import SobolSample
 
 RAM, WAY = "ram", "way"
@@ -58,26 +65,19 @@ DESIGNS, GRID, BLOCK, DRAWS = 60_000, 64, 4096, 400
 # A link that swings by less, in radians, is at rest; a slide travels by this part of the greatest number at least, as
 # others would be huge.
 LEAST_SWING, LEAST_TRAVEL = 0.05, 0.15
-# Numbers of designs stay within their ranges, wider by so many times; transmission angles are held with so much room,
-# for what lies between poses.
-WIDER, BETWEEN = 0.5, 0.01
+# Numbers of designs stay within their ranges, wider by so many times.
+WIDER = 0.5
 # Poses of a turn at which designs are followed when they are refined.
 FINE = 96
 # Between inputs farther apart than this part of a turn nothing is wanted.
 GAP = 1.0 / 12.0
-# Designs of a chain that are refined, the best of all that are refined to the end, steps of both, and how many answers
-# are given, of one kind so many; lengths that differ by less than a part are one answer.
-STARTED, BEST, FIRST_STEPS, STEPS, GIVEN, OF_A_KIND, ALIKE = 16, 24, 15, 60, 8, 3, 0.1
-# So many are looked at for them.
-LOOKED_AT = 60
-# The best are moved to so many places each, in so many rounds, so far: from and to.
-ROUNDS, MOVED, MOVES, MOVED_BY = 2, 8, 8, (0.02, 0.4)
+# Designs of a chain that are refined, the best of all that are refined to the end, steps of both, and rounds in which
+# the best are moved.
+STARTED, BEST, FIRST_STEPS, STEPS, ROUNDS = 16, 24, 15, 60, 2
 # Positions at which a refined linkage is handed on.
 POSITIONS = 12
-# The weight of Levenberg's term at first, how it shrinks and grows, its least, and where a design is given up.
-FIRST, EASIER, HARDER, LEAST, HOPELESS = 1e-2, 0.3, 4.0, 1e-7, 1e5
-# Added to the diagonal, as sizes may be free; no number goes farther in a step.
-FLOOR, FARTHEST = 1e-9, 0.5
+# Added to the diagonal of the normal equations, in parts of its greatest entry: sizes may be free.
+FLOOR = 1e-9
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -143,22 +143,6 @@ class FunctionChain(CurveChain):
 
 def _slide(name: str, own: str, at: str, angle: float, offset: float) -> Item:
     return slide(own, on=FRAME, at=at, through="A", angle=angle, offset=offset, name=name)
-
-
-@cache
-def _transmissions(chain: CurveChain) -> CompiledPath:
-    """Return the program of the sines of transmission angles of all dyads of a chain."""
-    some = chain.dimensions(np.zeros((1, len(chain.numbers))))
-    names = [f"{group.links[0]}.{TRANSMISSION_INDEX}" for group in decompose(chain.mechanism).groups]
-    return compile(chain.mechanism, names, free=list(some))
-
-
-def passes(chain: CurveChain, designs: Number, least: float) -> Number:
-    """Return of which designs of a chain, two or more, the transmission angle stays above a least one, (designs,)."""
-    if not least:
-        return np.ones(len(designs), bool)
-    found, clear = _transmissions(chain).programs.unscreened(Call({CRANK: turn(GRID)}, chain.dimensions(designs)))
-    return clear & np.all([each.min(axis=1) >= np.sin(least + BETWEEN) for each in found.values()], axis=0)
 
 
 @cache
@@ -334,39 +318,6 @@ def nearest_outputs(
 # --- refinement -----------------------------------------------------------------------------------------------
 
 
-Residuals = Callable[[Number], tuple[Number, Number, Number]]
-
-
-def least_squares_of_designs(x: Number, residuals: Residuals, steps: int) -> tuple[Number, Number]:
-    """Return unknowns of many designs, (designs, numbers), after so many of Levenberg's steps, and sums of squares.
-
-    `residuals` gives residuals (designs, n), their slopes (designs, n, numbers), and which designs are clear of limits.
-    """
-    x = x.copy()
-    r, j, clear = residuals(x)
-    cost = np.where(clear, (r**2).sum(axis=1), np.inf)
-    damping = np.where(clear, FIRST, 2.0 * HOPELESS)
-    diagonal = np.arange(x.shape[1])
-    for _ in range(steps):
-        alive = np.flatnonzero(damping < HOPELESS)
-        if not len(alive):
-            break
-        across = np.swapaxes(j[alive], 1, 2)
-        normal, slope = across @ j[alive], across @ r[alive][:, :, None]
-        # of what is measured in radians or strokes a floor in parts of the steepest number
-        floor = FLOOR * normal[:, diagonal, diagonal].max(axis=1, keepdims=True) + 1e-300
-        normal[:, diagonal, diagonal] = (normal[:, diagonal, diagonal] + floor) * (1.0 + damping[alive][:, None])
-        step = np.linalg.solve(normal, slope)[:, :, 0]
-        ahead = x[alive] - np.clip(step, -FARTHEST, FARTHEST)
-        tried, steep, clear = residuals(ahead)
-        costs = (tried**2).sum(axis=1)
-        better = clear & (costs < cost[alive])
-        to = alive[better]
-        x[to], r[to], j[to], cost[to] = ahead[better], tried[better], steep[better], costs[better]
-        damping[alive] = np.clip(damping[alive] * np.where(better, EASIER, HARDER), LEAST, 2.0 * HOPELESS)
-    return x, cost
-
-
 class FittedFunctions(NamedTuple):
     """Designs of one chain that are refined together, `x` (designs, numbers + 2), mirrored or not, and of one sense.
 
@@ -383,12 +334,16 @@ class FittedFunctions(NamedTuple):
 
     def refined(self, steps: int) -> FittedFunctions:
         """Return them after so many steps."""
-        x, cost = least_squares_of_designs(self.x, self._residuals, steps)
+        x, cost = refined(self.x, lambda x, rows: self._residuals(x), steps, FLOOR, of_greatest=True)
         return self._replace(x=x, cost=cost)
 
-    def best(self, kept: Number) -> FittedFunctions:
+    def some(self, kept: Number) -> FittedFunctions:
         """Return some of them."""
         return self._replace(x=self.x[kept], cost=self.cost[kept])
+
+    def moved(self, x: Number) -> FittedFunctions:
+        """Return designs at other unknowns, whose costs are not known."""
+        return self._replace(x=x, cost=np.full(len(x), np.inf))
 
     def angles(self, x: Number, inputs: Number) -> Number:
         """Return the angles of the chain's crank at inputs, (designs, inputs)."""
@@ -403,7 +358,7 @@ class FittedFunctions(NamedTuple):
         value, by, by_crank = (each[..., at] for each in (value, by, by_crank))
         whole, turns = self.chain.values(double[:, :n], turn(GRID))
         clear = clear & turns & self.chain.is_drawn(double[:, :n], whole)
-        clear = clear & passes(self.chain, double[:, :n], self.wanted.transmission)
+        clear = clear & keeps_transmission(self.chain, double[:, :n], self.wanted.transmission)
         if not clear.all():  # what is not clear means nothing, and is not taken
             value, by, by_crank = (np.where(clear[:, None], each, 1.0) for each in (value, by, by_crank))
         sign = -1.0 if self.mirrored else 1.0
@@ -439,31 +394,22 @@ def sampled_function(task: FunctionTask) -> Candidates:
     """Return the linkages of at most `task.links` links whose output comes nearest to a task's pairs."""
     wanted, is_angle = WantedFunction.of(task), task.linkage != "slider-crank"
     parts = chain_outputs(task.links, DESIGNS, is_angle)
-    found = _best([one.refined(FIRST_STEPS) for part in parts for one in _begun(part, wanted)])
-    rng = np.random.default_rng(0)
+    found = [one.refined(FIRST_STEPS) for part in parts for one in _begun(part, wanted)]
+    found, rng = best_refined(found, BEST, STEPS), np.random.default_rng(0)
     for _ in range(ROUNDS):
-        found = _best([*found, *(one.refined(FIRST_STEPS) for one in _moved(found, rng))])
-    different = list[Linkage]()
-    ranked = sorted((cost, n, k) for n, part in enumerate(found) for k, cost in enumerate(part.cost))
-    for cost, n, k in ranked[:LOOKED_AT]:
-        if len(different) < GIVEN and np.isfinite(cost):
-            made = found[n].linkage(k)
-            kinds = [one.title for one in different]
-            is_new = kinds.count(made.title) < OF_A_KIND and all(unlike(made, other) for other in different)
-            if is_new and isinstance(judged(made, task.conditions, np.inf), SolvedLinkage):
-                different.append(made)
-    if not different:  # what comes near is told, with what it misses
-        different = [found[n].linkage(k) for cost, n, k in ranked[:GIVEN] if np.isfinite(cost)]
+        moved = [one.refined(FIRST_STEPS) for one in best_moved(found, rng)]
+        found = best_refined([*found, *moved], BEST, STEPS)
+    verdicts = different_verdicts((part.linkage(k) for part, k in ranked(found)), task, GIVEN)
     designs = sum(len(part.designs) for part in parts)
-    complete = f"the best {len(different)} of {designs} designs of {len(parts)} chains, refined"
-    return Candidates(different, complete, is_family=True)
+    complete = f"the best {len(verdicts)} of {designs} designs of {len(parts)} chains, refined"
+    return Candidates([one.candidate for one in verdicts], complete, is_family=True, verdicts=tuple(verdicts))
 
 
 def _begun(part: ChainOutputs, wanted: WantedFunction) -> Iterator[FittedFunctions]:
     """Yield the designs of a chain whose outputs are nearest, mirrored or not, by their senses."""
     is_angle = part.chain.is_angle
     both = [nearest_outputs(part.values, wanted, is_angle, mirrored) for mirrored in (False, True)]
-    allowed = passes(part.chain, part.designs, wanted.transmission)
+    allowed = keeps_transmission(part.chain, part.designs, wanted.transmission)
     missed = np.concatenate([np.where(allowed, one[0], np.inf) for one in both])
     chosen = np.argsort(missed, kind="stable")[: min(STARTED, 2 * allowed.sum())]
     start, factor = (np.concatenate([one[k] for one in both])[chosen] for k in (1, 2))
@@ -477,31 +423,3 @@ def _begun(part: ChainOutputs, wanted: WantedFunction) -> Iterator[FittedFunctio
             begin = start[own] * (TURN / GRID)
             x = np.hstack([designs, begin[:, None], np.log(np.abs(factor[own]))[:, None]])
             yield FittedFunctions(part.chain, mirrored, sense, wanted, x, np.full(len(x), np.inf))
-
-
-def _best(parts: list[FittedFunctions]) -> list[FittedFunctions]:
-    """Return the best designs of all, and the best of each chain, refined to the end."""
-    if not parts:
-        return []
-    costs = np.sort(np.concatenate([part.cost for part in parts]))
-    kept = [part.best((part.cost <= costs[:BEST][-1]) | (part.cost == part.cost.min())) for part in parts]
-    return [part.refined(STEPS) for part in kept if np.isfinite(part.cost).any()]
-
-
-def _moved(parts: list[FittedFunctions], rng: np.random.Generator) -> Iterator[FittedFunctions]:
-    """Yield the best designs, each moved to several places about."""
-    order = sorted((part.cost[k], n, k) for n, part in enumerate(parts) for k in range(len(part.x)))
-    for _, n, k in order[:MOVED]:
-        part = parts[n]
-        low, high = np.log(MOVED_BY)
-        far = np.exp(low + (high - low) * rng.random((MOVES, 1)))
-        x = part.x[[k]] + far * rng.standard_normal((MOVES, part.x.shape[1]))
-        yield part._replace(x=x, cost=np.full(MOVES, np.inf))
-
-
-def unlike(one: Linkage, other: Linkage) -> bool:
-    """Return whether two linkages are of different chains, or of other proportions."""
-    if one.title != other.title or len(one.lengths) != len(other.lengths):
-        return True
-    own, its = (np.array(each.lengths) / max(each.lengths) for each in (one, other))
-    return not np.allclose(own, its, rtol=ALIKE)

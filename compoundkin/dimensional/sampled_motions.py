@@ -19,15 +19,14 @@ from compoundkin.base.arrays import TURN, Number
 from compoundkin.dimensional.candidates import POINT, Candidates, Linkage
 from compoundkin.dimensional.coupler_atlas import PARTS, coupler_atlas, resampled
 from compoundkin.dimensional.curve_chains import CRANK, CurveChain, Laying, turn
-from compoundkin.dimensional.defects import Rejection, SolvedLinkage, judged
-from compoundkin.dimensional.sampled_functions import (
+from compoundkin.dimensional.curve_conditions import keeps_transmission
+from compoundkin.dimensional.design_refinement import (
     GIVEN,
-    LOOKED_AT,
-    OF_A_KIND,
-    STEPS,
-    least_squares_of_designs,
-    passes,
-    unlike,
+    best_moved,
+    best_refined,
+    different_verdicts,
+    ranked,
+    refined,
 )
 from compoundkin.dimensional.tasks import PoseTask, extent
 from compoundkin.model.attributes import ANGLE, POSITION
@@ -37,10 +36,11 @@ from compoundkin.programs.compiled_path import CompiledPath, compile
 
 # Designs of the atlas; samples of a course, evenly along its arc, and poses of a design.
 DESIGNS, SAMPLES, POSES = 40_000, 64, 96
-# Designs of a chain that are refined, steps of them, and the best of all that are refined to the end.
-STARTED, FIRST_STEPS, BEST = 12, 20, 24
-# The best are moved to so many places each, in so many rounds, so far: from and to.
-ROUNDS, MOVED, MOVES, MOVED_BY = 1, 8, 8, (0.02, 0.4)
+# Designs of a chain that are refined, the best of all that are refined to the end, steps of both, and rounds in which
+# the best are moved.
+STARTED, BEST, FIRST_STEPS, STEPS, ROUNDS = 12, 24, 20, 60, 1
+# Added to the diagonal of the normal equations, in parts of its greatest entry: of a closed course the begin is free.
+FLOOR = 1e-9
 # The least part of the turn that follows an open course, and the least spread of a part of a curve.
 LEAST_TURN, LEAST_SPREAD = 0.3, 0.05
 # The part of residuals along the course, which keeps poses from gliding without end; the weight of an open one's ends.
@@ -184,12 +184,18 @@ class _FittedMotions(NamedTuple):
 
     def refined(self, steps: int) -> _FittedMotions:
         """Return them after so many steps."""
-        x, cost = least_squares_of_designs(self.x, self._residuals, steps)
+        x, cost = refined(self.x, lambda x, rows: self._residuals(x), steps, FLOOR, of_greatest=True)
         return self._replace(x=x, cost=cost)
 
-    def best(self, kept: Number) -> _FittedMotions:
+    def some(self, kept: Number) -> _FittedMotions:
         """Return some of them."""
         return self._replace(x=self.x[kept], cost=self.cost[kept])
+
+    def moved(self, x: Number) -> _FittedMotions:
+        """Return designs at other unknowns, whose costs are not known; a whole turn begins where it did."""
+        if self.course.closed:
+            x[:, -LAYING : 2 - LAYING] = self.x[0, -LAYING : 2 - LAYING]
+        return self._replace(x=x, cost=np.full(len(x), np.inf))
 
     def _angles(self, x: Number, poses: int) -> Number:
         parts = np.linspace(0.0, 1.0, poses, endpoint=not self.course.closed)
@@ -204,7 +210,7 @@ class _FittedMotions(NamedTuple):
         if not course.closed:
             clear = clear & _poses(self.chain, double[:, :n], turn(SAMPLES))[2]
             clear = clear & (double[:, 1 - LAYING] > LEAST_TURN) & (double[:, 1 - LAYING] < TURN)
-        clear = clear & passes(self.chain, double[:, :n], course.transmission)
+        clear = clear & keeps_transmission(self.chain, double[:, :n], course.transmission)
         if not clear.all():  # what is not clear means nothing, and is not taken
             w, v, slopes_w, slopes_v = (np.where(clear[:, None], each, 1.0) for each in (w, v, slopes_w, slopes_v))
         weight = course.weight
@@ -322,30 +328,21 @@ def sampled_motion(task: PoseTask) -> Candidates:
     """Return the linkages of at most `task.links` links that come nearest to a course of poses."""
     course = WantedMotion.of(task)
     parts = _courses(task.links, DESIGNS)
-    found = _best([one.refined(FIRST_STEPS) for part in parts for one in _begun(part, course)])
-    rng = np.random.default_rng(0)
+    found = [one.refined(FIRST_STEPS) for part in parts for one in _begun(part, course)]
+    found, rng = best_refined(found, BEST, STEPS), np.random.default_rng(0)
     for _ in range(ROUNDS):
-        found = _best([*found, *(one.refined(FIRST_STEPS) for one in _moved(found, rng))])
-    ranked = sorted((cost, n, k) for n, part in enumerate(found) for k, cost in enumerate(part.cost))
-    different, verdicts = list[Linkage](), list[SolvedLinkage | Rejection]()
-    for cost, n, k in ranked[:LOOKED_AT]:
-        if len(different) == GIVEN or not np.isfinite(cost):
-            break
-        made = found[n].linkage(k, task)
-        kinds = [one.title for one in different]
-        if kinds.count(made.title) < OF_A_KIND and all(unlike(made, other) for other in different):
-            verdicts.append(judged(made, task.conditions, task.tolerance or np.inf))
-            if isinstance(verdicts[-1], SolvedLinkage):
-                different.append(made)
+        moved = [one.refined(FIRST_STEPS) for one in best_moved(found, rng)]
+        found = best_refined([*found, *moved], BEST, STEPS)
+    verdicts = different_verdicts((part.linkage(k, task) for part, k in ranked(found)), task, GIVEN)
     designs = sum(len(part.designs) for part in parts)
-    complete = f"the best {len(different)} of {designs} designs of {len(parts)} chains, refined"
-    return Candidates(different, complete, is_family=True, verdicts=tuple(verdicts))
+    complete = f"the best {len(verdicts)} of {designs} designs of {len(parts)} chains, refined"
+    return Candidates([one.candidate for one in verdicts], complete, is_family=True, verdicts=tuple(verdicts))
 
 
 def _begun(part: _ChainCourses, course: WantedMotion) -> Iterator[_FittedMotions]:
     """Yield the designs of a chain whose courses are nearest, as they are or mirrored."""
     both = [nearest_courses(part.places, part.u, one) for one in (course, course.mirrored)]
-    allowed = passes(part.chain, part.designs, course.transmission)
+    allowed = keeps_transmission(part.chain, part.designs, course.transmission)
     missed = np.concatenate([np.where(allowed, one[0], np.inf) for one in both])
     chosen = np.argsort(missed, kind="stable")[: min(STARTED, 2 * allowed.sum())]
     count = len(part.designs)
@@ -374,24 +371,3 @@ def _unknowns(design: Number, how: Number, chain: CurveChain, course: WantedMoti
     place = wanted[0].mean() - scale * z[0].mean()
     body = np.angle(np.vdot(u[0], wanted[1]))
     return np.array([*design, *window, np.log(np.abs(scale)), np.angle(scale), place.real, place.imag, body])
-
-
-def _best(parts: list[_FittedMotions]) -> list[_FittedMotions]:
-    """Return the best designs of all, and the best of each chain, refined to the end."""
-    if not parts:
-        return []
-    costs = np.sort(np.concatenate([part.cost for part in parts]))
-    kept = [part.best((part.cost <= costs[:BEST][-1]) | (part.cost == part.cost.min())) for part in parts]
-    return [part.refined(STEPS) for part in kept if np.isfinite(part.cost).any()]
-
-
-def _moved(parts: list[_FittedMotions], rng: np.random.Generator) -> Iterator[_FittedMotions]:
-    """Yield the best designs, each moved to several places about."""
-    order = sorted((part.cost[k], n, k) for n, part in enumerate(parts) for k in range(len(part.x)))
-    for _, n, k in order[:MOVED]:
-        low, high = np.log(MOVED_BY)
-        far = np.exp(low + (high - low) * rng.random((MOVES, 1)))
-        x = parts[n].x[[k]] + far * rng.standard_normal((MOVES, parts[n].x.shape[1]))
-        if parts[n].course.closed:
-            x[:, -LAYING : 2 - LAYING] = parts[n].x[k, -LAYING : 2 - LAYING]
-        yield parts[n]._replace(x=x, cost=np.full(MOVES, np.inf))

@@ -263,7 +263,7 @@ def test_growth_is_promised_what_a_step_gives() -> None:
     target = curve_fitting.CurveTarget.of(EGG, True)
     matches = [match for match in coupler_atlas(4, 4_000).near(EGG, 8) if match.chain is chain]
     part = next(iter(curve_fitting._refined(curve_fitting._begun(matches, target))))
-    one = part.best(part.cost.argmin(keepdims=True))
+    one = part.some(part.cost.argmin(keepdims=True))
     larger = chain.grown("frame", 1)
     gains, designs = curve_fitting._promised(one, larger, np.random.default_rng(1).random((512, len(larger.numbers))))
     assert len(gains) == len(designs) > 3

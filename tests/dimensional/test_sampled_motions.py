@@ -10,6 +10,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.dimensional import sampled_motions
 from compoundkin.dimensional.curve_chains import curve_chains, turn
+from compoundkin.dimensional.curve_conditions import BETWEEN, keeps_transmission
 from compoundkin.dimensional.sampled_motions import SAMPLES, WantedMotion, _begun, _courses, nearest_courses
 from compoundkin.dimensional.tasks import extent
 from compoundkin.errors import InvalidInput
@@ -122,3 +123,15 @@ def test_slopes_are_differences(part: slice) -> None:
 def test_what_is_no_course_is_said(poses: np.ndarray, how: dict[str, object], words: str) -> None:
     with pytest.raises(InvalidInput, match=words):
         ck.tasks.poses("plate", poses, **how)
+
+
+def test_the_transmission_angle_of_a_geared_five_bar_is_that_of_its_dyad() -> None:
+    chain = next(one for one in curve_chains(6) if "five-bar" in one.title)
+    designs = chain.designs(np.random.default_rng(7).random((512, len(chain.numbers))))
+    designs = designs[chain.curves(designs, 64)[1]][:8]
+    (dyad,) = (one for one in ck.decompose(chain.mechanism).groups if len(one.links) == 2)
+    program = ck.compile(chain.mechanism, f"{dyad.links[0]}.transmission_index", free=list(chain.dimensions(designs)))
+    found = program(turn(64), chain.dimensions(designs))[f"{dyad.links[0]}.transmission_index"]
+    kept = keeps_transmission(chain, designs, 0.4)
+    assert 0 < kept.sum() < len(kept)
+    np.testing.assert_array_equal(kept, found.min(axis=1) >= np.sin(0.4 + BETWEEN))

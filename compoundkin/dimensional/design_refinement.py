@@ -1,0 +1,172 @@
+"""Many designs of a chain refined at once: Levenberg's steps, the best of all, moves from there, different answers.
+
+Whoever follows a curve, a function or a motion has residuals of his own; how they are lowered is the same for all. The
+steps are those of K. Levenberg, A method for the solution of certain non-linear problems in least squares, Q. Appl.
+Math. 2 (1944) 164-168, with the diagonal in place of the unit matrix (D. W. Marquardt, J. SIAM 11 (1963) 431-441).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import islice
+from typing import Protocol, Self, TypeAlias, TypeVar
+
+import numpy as np
+
+from compoundkin.base.arrays import Number
+from compoundkin.dimensional.candidates import Linkage
+from compoundkin.dimensional.defects import Rejection, SolvedLinkage, judged
+from compoundkin.dimensional.tasks import Task
+
+# The weight of Levenberg's term at first, how it shrinks and grows, its least, and where a design is given up.
+FIRST, EASIER, HARDER, LEAST, HOPELESS = 1e-2, 0.3, 4.0, 1e-7, 1e5
+# No number goes farther in a step; a step that gains less than is asked for makes the next so much harder.
+FARTHEST, SLOWER = 0.5, 30.0
+# The best are moved to so many places each, so far: from and to.
+MOVED, MOVES, MOVED_BY = 8, 8, (0.02, 0.4)
+# So many answers are given, of one kind of linkage so many, and so many linkages are looked at for them; lengths that
+# differ by less than a part make no other linkage.
+GIVEN, OF_A_KIND, LOOKED_AT, ALIKE = 8, 3, 60, 0.1
+
+# Of unknowns (designs, numbers) of some rows: residuals (designs, n), their slopes (designs, n, numbers), and which
+# designs are clear of limits.
+Residuals: TypeAlias = Callable[[Number, Number], tuple[Number, Number, Number]]
+
+
+def levenberg_steps(r: Number, j: Number, damping: Number, floor: float, *, of_greatest: bool = False) -> Number:
+    """Return the steps (designs, numbers) that residuals (designs, n) with slopes (designs, n, numbers) ask for.
+
+    A `floor` is added to the diagonal, for what residuals do not depend on: as it is, or as a part `of_greatest` of its
+    entries, where residuals have units.
+    """
+    across = np.swapaxes(j, 1, 2)
+    normal, slope = across @ j, across @ r[:, :, None]
+    at = np.arange(normal.shape[1])
+    diagonal = normal[:, at, at]
+    least = floor * diagonal.max(axis=1, keepdims=True) + 1e-300 if of_greatest else floor
+    normal[:, at, at] = (diagonal + least) * (1.0 + damping[:, None])
+    return np.linalg.solve(normal, slope)[:, :, 0]
+
+
+def refined(
+    x: Number,
+    residuals: Residuals,
+    steps: int,
+    floor: float,
+    *,
+    of_greatest: bool = False,
+    holds: Callable[[Number, Number], Number] | None = None,
+    settled: float = 0.0,
+) -> tuple[Number, Number]:
+    """Return unknowns of many designs, (designs, numbers), after so many of Levenberg's steps, and sums of squares.
+
+    No step is taken to what is not clear, nor from where a condition `holds` (of unknowns of some rows) to where it
+    does not. A step that gains less than the part `settled` counts as a failed one. For `floor` see `levenberg_steps`.
+    """
+    x, rows = x.copy(), np.arange(len(x))
+    r, j, clear = residuals(x, rows)
+    cost = np.where(clear, (r**2).sum(axis=1), np.inf)
+    held = np.ones(len(x), bool) if holds is None else holds(x, rows)
+    damping = np.where(clear, FIRST, 2.0 * HOPELESS)
+    for _ in range(steps):
+        alive = np.flatnonzero(damping < HOPELESS)
+        if not len(alive):
+            break
+        step = levenberg_steps(r[alive], j[alive], damping[alive], floor, of_greatest=of_greatest)
+        ahead = x[alive] - np.clip(step, -FARTHEST, FARTHEST)
+        tried, steep, clear = residuals(ahead, alive)
+        costs = (tried**2).sum(axis=1)
+        better = np.flatnonzero(clear & (costs < cost[alive]))
+        if holds is not None:
+            now = holds(ahead[better], alive[better])
+            kept = now | ~held[alive[better]]
+            better = better[kept]
+            held[alive[better]] = now[kept]
+        to = alive[better]
+        gain = 1.0 - costs[better] / cost[to]
+        x[to], r[to], j[to], cost[to] = ahead[better], tried[better], steep[better], costs[better]
+        factor = np.full(len(alive), HARDER)
+        factor[better] = EASIER
+        damping[alive] = np.clip(damping[alive] * factor, LEAST, 2.0 * HOPELESS)
+        damping[to[gain < settled]] *= SLOWER
+    return x, cost
+
+
+class RefinedDesigns(Protocol):
+    """Designs of one chain that are refined together: unknowns `x` (designs, numbers), sums of squares `cost`."""
+
+    @property
+    def x(self) -> Number:
+        """The unknowns."""
+
+    @property
+    def cost(self) -> Number:
+        """The sums of squares."""
+
+    def refined(self, steps: int) -> Self:
+        """Return them after so many steps."""
+
+    def some(self, kept: Number) -> Self:
+        """Return some of them."""
+
+    def moved(self, x: Number) -> Self:
+        """Return designs like this one at other unknowns, whose costs are not known."""
+
+
+Designs = TypeVar("Designs", bound=RefinedDesigns)
+
+
+def best_refined(parts: Sequence[Designs], count: int, steps: int) -> list[Designs]:
+    """Return so many best designs of all, and the best of each chain, after so many steps more."""
+    if not parts:
+        return []
+    least = np.sort(np.concatenate([part.cost for part in parts]))[:count][-1]
+    kept = [part.some((part.cost <= least) | (part.cost == part.cost.min())) for part in parts]
+    return [part.refined(steps) for part in kept if np.isfinite(part.cost).any()]
+
+
+def ranked(parts: Sequence[Designs]) -> Iterator[tuple[Designs, int]]:
+    """Yield the designs of all parts whose costs are known, the best first: the part, and the place in it."""
+    order = sorted((float(cost), n, k) for n, part in enumerate(parts) for k, cost in enumerate(part.cost))
+    yield from ((parts[n], k) for cost, n, k in order if np.isfinite(cost))
+
+
+def best_moved(parts: Sequence[Designs], rng: np.random.Generator) -> Iterator[Designs]:
+    """Yield the best designs of all, each moved to several places about."""
+    for part, k in islice(ranked(parts), MOVED):
+        one = part.some(np.array([k]))
+        yield one.moved(scattered(one.x, rng))
+
+
+def scattered(x: Number, rng: np.random.Generator) -> Number:
+    """Return several places about the unknowns of a design, (1, numbers), nearer and farther."""
+    low, high = np.log(MOVED_BY)
+    far = np.exp(low + (high - low) * rng.random((MOVES, 1)))
+    return np.asarray(x + far * rng.standard_normal((MOVES, x.shape[1])))
+
+
+def different_verdicts(linkages: Iterable[Linkage], task: Task, count: int) -> list[SolvedLinkage | Rejection]:
+    """Return what is said of linkages, until so many are without a defect: none of these like another, few of a kind.
+
+    Where a task has no tolerance, how far they are off is no defect.
+    """
+    verdicts, good, kinds = list[SolvedLinkage | Rejection](), list[Linkage](), Counter[str]()
+    for made in islice(linkages, LOOKED_AT):
+        if len(good) == count:
+            break
+        if kinds[made.title] >= OF_A_KIND or any(alike(made, other) for other in good):
+            continue
+        verdicts.append(judged(made, task.conditions, task.tolerance or np.inf))
+        if isinstance(verdicts[-1], SolvedLinkage):
+            kinds[made.title] += 1
+            good.append(made)
+    return verdicts
+
+
+def alike(one: Linkage, other: Linkage, *, at_any_size: bool = True) -> bool:
+    """Return whether two linkages are of one chain and of nearly the same lengths, up to their size."""
+    if one.title != other.title or len(one.lengths) != len(other.lengths):
+        return False
+    own, its = (np.array(each.lengths) / (max(each.lengths) if at_any_size else 1.0) for each in (one, other))
+    return np.allclose(own, its, rtol=ALIKE)
