@@ -16,6 +16,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.model.attributes import typeset_unit
 from compoundkin.view.plot.plot_style import GREY, INK, SHADE, SMALL_PRINT, Plot, colours
 from compoundkin.view.plot.plotted_rows import CONSTANT, Plotted
+from compoundkin.view.sketch.sketch_dimensions import RAISED
 
 WIDTH = 7.0
 # Characters of a title in a line.
@@ -411,15 +412,18 @@ class PointLabel:
 
 
 def value_text(value: float, scale: float = 0.0) -> str:
-    """Return a value in four digits, with a proper minus sign. Zero where it is nothing beside the scale.
+    """Return a value in four digits, with a proper minus sign, far from 1 with a power of ten.
 
-    >>> value_text(-12.34567), value_text(12345.6), value_text(1e-14, 1.0)
-    ('−12.35', '12346', '0')
+    Zero where it is nothing beside the scale.
+
+    >>> value_text(-12.34567), value_text(12345.6), value_text(1e-14, 1.0), value_text(1.085e6)
+    ('−12.35', '12346', '0', '1.085·10⁶')
     """
     if abs(value) <= NOTHING * scale:
         return "0"
     form = ".0f" if MANY_DIGITS <= abs(value) < POWER_OF_TEN else ".4g"
-    return format(value, form).replace("-", "−")
+    digits, _, power = format(value, form).partition("e")
+    return f"{digits.replace('-', '−')}{f'·10{str(int(power)).translate(RAISED)}' if power else ''}"
 
 
 def place_labels(figure: Any, labels: Sequence[PointLabel]) -> None:
