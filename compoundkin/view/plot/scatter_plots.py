@@ -296,6 +296,11 @@ def known_and_best(
         for k, own in enumerate(values):
             ends[k] = min(ends[k, 0], own.min()), max(ends[k, 1], own.max())
         signed = np.stack([sign * own for sign, own in zip(signs, values, strict=True)])
+        if len(rows):
+            # most are worse than a row of the front so far: that with the next lesser first figure tells
+            before = np.searchsorted(best[0], signed[0], side="right") - 1
+            may = (before < 0) | (best[1][before] >= signed[1])
+            places, signed = places[may], signed[:, may]
         rows, best = np.concatenate([rows, places]), np.concatenate([best, signed], axis=1)
         front = pareto_rows(*best)
         rows, best = rows[front], best[:, front]
