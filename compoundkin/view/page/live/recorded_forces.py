@@ -298,6 +298,16 @@ class RecordedShaking:
         return self.whole.about(point)
 
 
+class RecordedAction(NamedTuple):
+    """A wrench that acts on a link at a place; on a `pin` it is a part of what acts there."""
+
+    description: str
+    link: str
+    place: Number
+    wrench: Wrench
+    pin: str = ""
+
+
 @dataclass(frozen=True, eq=False)
 class RecordedAnalysis:
     """All forces of one recorded pose, by the names of `Forces`."""
@@ -355,38 +365,49 @@ class RecordedAnalysis:
 
     def acting(self) -> Iterator[tuple[str, tuple[Number, Wrench]]]:
         """Yield the place and the wrench of all that acts on links, by what describes it."""
-        at, mechanism = self.at, self.at.own.mechanism
         pins = dict[tuple[str, str], Wrench]()
+        for one in (*self._loading(), *self._inertial(), *self._of_pairs()):
+            yield one.description, (one.place, one.wrench)
+            if one.pin:
+                pins[one.pin, one.link] = pins.get((one.pin, one.link), Wrench()) + one.wrench
+        for (letter, link), wrench in pins.items():
+            place = self.at.place(self.own.motion.mechanism.real_pins[letter][0], letter).c[0]
+            yield described_wrench(PAIR, letter, link, letter), (place, wrench)
+
+    def _loading(self) -> Iterator[RecordedAction]:
+        """Yield loads and weights."""
         for what, link, wrench in self._applied:
-            point = what.at if isinstance(what, Mass) else what.attack(link)
-            by = "" if isinstance(what, Mass) else next((name for name in what.links if name != link), "")
-            place = at.place(link, point).c[0] if point is not None else _line(at, link, wrench)
-            yield (
-                described_wrench(WEIGHT if isinstance(what, Mass) else what.title, what.name, link, by),
-                (place, wrench),
+            if isinstance(what, Mass):
+                point, by, title, pin = what.at, "", WEIGHT, ""
+            else:
+                by = next((name for name in what.links if name != link), "")
+                point, title, pin = what.attack(link), what.title, what.pin
+            place = self.at.place(link, point).c[0] if point is not None else _line(self.at, link, wrench)
+            yield RecordedAction(described_wrench(title, what.name, link, by), link, place, wrench, pin)
+
+    def _inertial(self) -> Iterator[RecordedAction]:
+        """Yield what masses oppose to their accelerations."""
+        for mass in self.at.masses if self.own.inertia else ():
+            place, description = (
+                self.at.place(mass.link, mass.at).c[0],
+                described_wrench(INERTIA, mass.name, mass.link, ""),
             )
-            if not isinstance(what, Mass) and what.pin:
-                pins[what.pin, link] = pins.get((what.pin, link), Wrench()) + wrench
-        for mass in at.masses if self.own.inertia else ():
-            place = at.place(mass.link, mass.at).c[0]
-            yield described_wrench(INERTIA, mass.name, mass.link, ""), (place, at.inertia(mass))
+            yield RecordedAction(description, mass.link, place, self.at.inertia(mass))
+
+    def _of_pairs(self) -> Iterator[RecordedAction]:
+        """Yield what pairs do to both their links; of a driven one the driver's effort by itself."""
         driven = {one.pair.name: one for one in self.own.motion.structure.driven.values()}
-        written = {pair.name for pair in mechanism.written_pairs}
+        written = {pair.name for pair in self.own.motion.mechanism.written_pairs}
         for name, one in self.pairs.items():
             pair, place = one.pair, one.pair.acting_place(one.ends, one.poses)
-            unit = pair.wrenches(one.ends, one.poses)[-1]
+            unit, pin = pair.wrenches(one.ends, one.poses)[-1], "" if name in written else pair.letters[0]
             for link, by, sign in ((pair.members[1], pair.members[0], 1.0), (pair.members[0], pair.members[1], -1.0)):
-                whole = one.own.times(sign)
+                wrench = one.own.times(sign)
                 if name in driven:
                     held = unit.times(driven[name].pair.effort(one.ends, one.poses, one.own) * sign)
-                    yield described_wrench(DRIVER, driven[name].drive.name, link, by), (place, held)
-                    whole = whole - held
-                if name not in written:
-                    pins[pair.letters[0], link] = pins.get((pair.letters[0], link), Wrench()) + whole
-                yield described_wrench(PAIR, name, link, by), (place, whole)
-        for (letter, link), wrench in pins.items():
-            place = at.place(self.own.mechanism.real_pins[letter][0], letter).c[0]
-            yield described_wrench(PAIR, letter, link, letter), (place, wrench)
+                    yield RecordedAction(described_wrench(DRIVER, driven[name].drive.name, link, by), link, place, held)
+                    wrench = wrench - held
+                yield RecordedAction(described_wrench(PAIR, name, link, by), link, place, wrench, pin)
 
     def figure(self, name: str) -> Number:
         """Return a quantity of forces, and the shaking moment about a point of the frame."""
