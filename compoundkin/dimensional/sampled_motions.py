@@ -145,11 +145,11 @@ def nearest_courses(z: Number, u: Number, course: WantedMotion) -> tuple[Number,
     """
     best, how = np.full(len(z), np.inf), np.zeros((len(z), 3), int)
     spectra = [np.fft.fft(one, axis=1) for one in (z, u)]
+    whole = np.var(z, axis=1, keepdims=True)
     running = [np.pad(np.cumsum(np.tile(one, 2), axis=1), ((0, 0), (1, 0))) for one in (z, np.abs(z) ** 2)]
     for long in (SAMPLES,) if course.closed else PARTS:
         sums, squares = (one[:, long : long + SAMPLES] - one[:, :SAMPLES] for one in running)
         spread = squares - np.abs(sums) ** 2 / long
-        whole = float(np.mean(np.abs(z - z.mean(axis=1, keepdims=True)) ** 2)) if len(z) else 1.0
         at = np.linspace(0, SAMPLES - 1, long)
         places, vectors = (np.interp(at, np.arange(SAMPLES), one) for one in (course.places, course.u))
         places = places - places.mean()

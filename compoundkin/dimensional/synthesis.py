@@ -227,10 +227,10 @@ def _nearest(rejected: list[Rejection]) -> str:
 
 def _usual(task: Task) -> str:
     """Return what answers are ranked by where nothing is said: accuracy where they approach a task."""
-    approached = isinstance(task, FunctionTask) and (task.whole is not None or len(task.inputs) > 5)
-    approached = (
-        approached or isinstance(task, DwellTask | CurveTask) or (isinstance(task, PoseTask) and task.count > 5)
-    )
+    if isinstance(task, FunctionTask):
+        approached = task.whole is not None or len(task.inputs) > 5
+    else:
+        approached = isinstance(task, DwellTask | CurveTask) or (isinstance(task, PoseTask) and task.count > 5)
     return ACCURACY if approached else TRANSMISSION
 
 
