@@ -111,10 +111,11 @@ def _structure(document: str, question: Mapping[str, Any]) -> Reply:
     except InvalidMechanism as error:
         told = located(error, document) if syntax_of(document) == "toml" else error
         return {"problems": [_problem(one) for one in told.problems], "is_text": False}
-    return _told(reading)
+    return _structure_of(reading)
 
 
-def _told(reading: Reading) -> Reply:
+def _structure_of(reading: Reading) -> Reply:
+    """Return what follows from a reading, as plain data."""
     drawing, structure, mechanism = drawing_of(reading), reading.structure, reading.mechanism
     colours, driven = _colours(structure), structure.driven if structure else {}
     return {
@@ -354,7 +355,7 @@ def _motion(document: str, question: Mapping[str, Any]) -> Reply:
         "start": _nearest(motion, drawing_of(reading)),
         "gaps": [] if good.all() else list(_gaps(motion)),
         "problems": [],
-        **({"structure": _told(reading)} if reading.is_searched else {}),
+        **({"structure": _structure_of(reading)} if reading.is_searched else {}),
     }
 
 

@@ -1,4 +1,4 @@
-"""What the pen is replied: linkages for a curve drawn by hand, the nearest of an atlas at once, then refined ones.
+"""Replies to the pen: linkages for a curve drawn by hand, the nearest of an atlas at once, then refined ones.
 
 Three questions bring better and better answers, each slower: `near` are designs of the atlas as they are, `fitted` the
 best of them refined, `traced` what `synthesise` finds for the task, verified. `atlas` makes the atlas before a curve is
@@ -148,10 +148,10 @@ def _reply(curve: PenCurve, found: Iterable[_Suggestion]) -> Reply:
         if links not in kinds or (kinds.get(title, 0) < OF_A_KIND and len(kept) < GIVEN):
             kept.append(one)
             kinds |= {title: kinds.get(title, 0) + 1, links: 1}
-    return {"closed": curve.closed, "suggestions": list(map(_told, kept)), "problems": []}
+    return {"closed": curve.closed, "suggestions": list(map(_plain, kept)), "problems": []}
 
 
-def _told(one: _Suggestion) -> Reply:
+def _plain(one: _Suggestion) -> Reply:
     """Return a suggestion as plain data."""
     from compoundkin.files.mechanism_files import written_text
     from compoundkin.files.writer import document

@@ -260,21 +260,12 @@ def is_as_drawn(mechanism: Mechanism) -> bool:
 
 def _complete(document: Document, places: dict[str, complex], poses: dict[str, tuple[complex, complex]]) -> None:
     """Add the points and links that are not known yet: from the drawing, then link by link from what is known."""
-    drawn = document.get("drawn")
-    for letter, value in drawn.items() if isinstance(drawn, dict) else ():
-        if (place := _plain_place(value)) is not None:
-            places.setdefault(str(letter), place)
+    for letter, place in _plain_places(document.get("drawn")).items():
+        places.setdefault(letter, place)
     links = document.get("links")
-    tables = (
-        {name: table.get("points") for name, table in links.items() if isinstance(table, dict)}
-        if isinstance(links, dict)
-        else {}
-    )
-    written = {
-        name: {k: p for k, v in points.items() if (p := _plain_place(v)) is not None}
-        for name, points in tables.items()
-        if isinstance(points, dict)
-    }
+    tables = links.items() if isinstance(links, dict) else ()
+    points = {name: table.get("points") for name, table in tables if isinstance(table, dict)}
+    written = {name: _plain_places(own) for name, own in points.items() if isinstance(own, dict)}
     for letter, place in written.get(FRAME, {}).items():
         places.setdefault(letter, place)
     left = [name for name in written if name not in poses and written[name]]
@@ -283,15 +274,21 @@ def _complete(document: Document, places: dict[str, complex], poses: dict[str, t
         name = max(left, key=lambda one: min(2, sum(k in places for k in written[one])))
         left.remove(name)
         poses[name] = _pose(written[name], places)
-    for name, points in written.items():
+    for name, own in written.items():
         origin, along = poses.get(name, (0j, 1 + 0j))
-        for letter, p in points.items():
+        for letter, p in own.items():
             places.setdefault(letter, origin + along * p)
-    for name, letters in tables.items():
+    for name, letters in points.items():
         known = [places[k] for k in letters if k in places] if isinstance(letters, list) else []
         if name not in poses and len(known) > 1 and known[0] != known[1]:
             line = known[1] - known[0]
             poses[name] = known[0], line / abs(line)
+
+
+def _plain_places(table: Any) -> dict[str, complex]:
+    """Return the places that a table of a document writes, by letter."""
+    own = table.items() if isinstance(table, dict) else ()
+    return {str(letter): place for letter, value in own if (place := _plain_place(value)) is not None}
 
 
 def _pose(points: Mapping[str, complex], places: Mapping[str, complex]) -> tuple[complex, complex]:
