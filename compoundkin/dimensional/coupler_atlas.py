@@ -51,6 +51,8 @@ DRAWS = 400
 COMPARED, FEW = 1024, 64
 # By how much a likeness in single precision may be above its bound.
 ROUNDED = 1e-5
+# For each design that is given so many that hold conditions are looked at for different ones.
+LOOKED_AT = 16
 # Two curves are of one kind where they are apart by less than this part of the way to the wanted one.
 TWINS = 0.35
 
@@ -179,7 +181,7 @@ class CouplerAtlas(ShortRepr):
         kept = [part for part in kept if part.size and (links is None or part.chain.links <= links)]
         each = max(2, -(-2 * count // max(len(kept), 1)))
         found = [(float(one.apart[0]), k, one) for k, part in enumerate(kept)
-                 for one in islice(_different(part, sought), each)]  # fmt: skip
+                 for one in islice(_different(part, sought, LOOKED_AT * each), each)]  # fmt: skip
         found = sorted(found, key=lambda one: one[0])[:count]
         matches = list[AtlasMatch]()
         for k in sorted({k for _, k, _ in found}):
@@ -248,8 +250,11 @@ class _Ranked(NamedTuple):
         return _Ranked(*(None if each[0] is None else np.concatenate(each) for each in zip(*parts, strict=True)))
 
 
-def _different(part: AtlasPart, sought: SoughtCurve) -> Iterator[_Ranked]:
-    """Yield the nearest designs of one chain that hold the conditions, one by one, none a twin of one before."""
+def _different(part: AtlasPart, sought: SoughtCurve, looked_at: int) -> Iterator[_Ranked]:
+    """Yield the nearest designs of one chain that hold the conditions, one by one, none a twin of one before.
+
+    So many that hold are looked at.
+    """
     descriptors = part.descriptors
     shown: list[Number] = []
     if sought.timing is not None:
@@ -263,13 +268,31 @@ def _different(part: AtlasPart, sought: SoughtCurve) -> Iterator[_Ranked]:
                 designs, scale, place, _ = _laid(part, some, sought)
                 held = sought.conditions.held(LaidDesigns(part.chain, designs, scale, place, some.mirrored))
                 some, many = some.some(held), min(2 * many, COMPARED)
-            own, apart = descriptors[some.at], some.apart
-            nearest = np.max([np.zeros(len(own)), *(likeness(own, one)[0] for one in shown)], axis=0)
+            if looked_at <= 0:
+                return
+            some = some.some(slice(looked_at))
+            looked_at -= len(some.at)
+            own = descriptors[some.at]
+            # no twin is as near as this
+            limit = 1.0 - (TWINS * some.apart) ** 2 / 2.0
+            alike = np.zeros(len(own), bool)
+            for one in shown:
+                alike |= _alike(own, one, limit, ~alike)
             for k in range(len(own)):
-                if nearest[k] <= 1.0 - (TWINS * apart[k]) ** 2 / 2.0:
+                if not alike[k]:
                     shown.append(own[k])
-                    nearest = np.maximum(nearest, likeness(own, own[k])[0])
+                    alike |= _alike(own, own[k], limit, ~alike)
                     yield some.some(slice(k, k + 1))
+
+
+def _alike(descriptors: Number, one: Number, limit: Number, asked: Number) -> Number:
+    """Return which descriptors that are asked are more like one than a limit for each: by magnitudes, then exactly."""
+    magnitudes, sizes = np.abs(descriptors), np.abs(one)
+    asked = asked & (np.maximum(magnitudes @ sizes, magnitudes @ sizes[::-1]) > limit - ROUNDED)
+    alike = np.zeros(len(descriptors), bool)
+    if asked.any():
+        alike[asked] = likeness(descriptors[asked], one)[0] > limit[asked]
+    return alike
 
 
 def _matches(part: AtlasPart, some: _Ranked, sought: SoughtCurve) -> list[AtlasMatch]:
@@ -392,11 +415,13 @@ def _best_parts(z: Number, variants: Sequence[Number]) -> tuple[Number, Number, 
     from scipy.fft import fft, ifft
 
     spectrum = fft(z, axis=1)
-    running = [np.pad(np.cumsum(np.tile(one, 2), axis=1), ((0, 0), (1, 0))) for one in (z, z.real**2 + z.imag**2)]
-    whole = np.abs(spectrum[:, 1:]) ** 2
-    least = LEAST_SPREAD * whole.sum(axis=1, keepdims=True) / STARTS**2
+    whole = (np.abs(spectrum[:, 1:]) ** 2).sum(axis=1, keepdims=True)
+    least = LEAST_SPREAD * whole / STARTS**2
     best, at, which = np.zeros(len(z)), np.zeros(len(z), int), np.zeros(len(z), int)
-    spreads = dict[int, Number]()
+    # what is divided by: of a whole curve that is the same wherever it begins
+    spreads = {STARTS: np.sqrt(whole / STARTS)}
+    if any(len(curve) != STARTS for curve in variants):
+        running = [np.pad(np.cumsum(np.tile(one, 2), axis=1), ((0, 0), (1, 0))) for one in (z, z.real**2 + z.imag**2)]
     for k, curve in enumerate(variants):
         long = len(curve)
         if long not in spreads:

@@ -37,15 +37,23 @@ from compoundkin.dimensional.tasks import Conditions, CurveTask, CurveTiming
 DESIGNS, STARTED, GIVEN, SIMPLE, OF_A_KIND = 200_000, 200, 6, 2, 3
 # Verdicts on linkages, at most.
 MOST_JUDGED = 40
-# Rounds in which what remains farther than this sum of squares is moved and grown.
-ROUNDS, NEAR = 3, 2e-4
+# Rounds, for each dyad that linkages may have, in which what remains farther than this sum of squares is moved and
+# grown, and by which factor that is eased each round: what is nearly there ends soon, what is far is sought for long.
+ROUNDS, NEAR, EASED = 9, 2e-4, 1.25
 # How many of the best grow, not more of a chain than this; the dyads that are drawn for each pair of links and mode,
 # and how many of the most promising are taken of each, and of all.
 GROWN, OF_A_CHAIN, DRAWN, TAKEN, MOST_TAKEN = 5, 3, 256, 3, 10
 # How many designs of a number of links are kept from a round; which are the same.
 KEPT, SAME = 24, 1e-6
+# Designs of a chain whose sums of squares are less than this apart came to the same place.
+APART = 1.03
+# By how much the sum of squares of a design counts as more each time that it was moved, or grew.
+TIRED = 1.15
 # The weight of the ends of an open curve; the least part of the turn that traces it.
 ENDS, LEAST_TURN = 2.0, 0.3
+# The greatest sum of a linkage's lengths, in the target's RMS radius: steps lead to larger and larger ones where a
+# point on a long arm comes nearer and nearer to a line.
+LARGEST = 100.0
 # Positions over a turn at which a refined linkage is handed on.
 POSITIONS = 12
 # Poses of a curve, and places of its target.
@@ -107,7 +115,7 @@ class CurveTarget(NamedTuple):
     size: complex
     middle: complex
     timing: CurveTiming | None = None
-    conditions: CurveConditions = CurveConditions(Conditions())
+    conditions: CurveConditions = CurveConditions(Conditions(), LARGEST)
 
     @classmethod
     def of(
@@ -124,13 +132,14 @@ class CurveTarget(NamedTuple):
             places, timing = curve[kept], timing._replace(parts=timing.parts[kept])
         places = (places - middle) / size
         places = GRAIN * (np.round(places.real / GRAIN) + 1j * np.round(places.imag / GRAIN))
-        seen = CurveConditions(Conditions() if conditions is None else conditions.seen_from(size, middle))
+        seen = CurveConditions(Conditions() if conditions is None else conditions.seen_from(size, middle), LARGEST)
         return cls(places, closed, size, middle, timing, seen)
 
     @property
     def sought(self) -> SoughtCurve:
         """The curve to look for in an atlas."""
-        return SoughtCurve(self.places, self.closed, self.timing, self.conditions)
+        # designs of the atlas are seldom large: they need not all be laid
+        return SoughtCurve(self.places, self.closed, self.timing, self.conditions._replace(size=None))
 
     @property
     def has_window(self) -> bool:
@@ -214,9 +223,9 @@ def traced(task: CurveTask) -> Candidates:
     target = CurveTarget.of(task.points, task.closed, task.timing, task.conditions)
     matches = atlas.nearest(target.sought, STARTED)
     if not matches:  # what comes near without conditions is told, with what it misses
-        target = target._replace(conditions=CurveConditions(Conditions()))
+        target = target._replace(conditions=CurveConditions(Conditions(), LARGEST))
         matches = atlas.nearest(target.sought, STARTED)
-    found = _fitted(matches, target, task.links, ROUNDS)
+    found = _fitted(matches, target, task.links, _rounds(task.links))
     verdicts = list[SolvedLinkage | Rejection]()
     # of each number of links, though fewer are seldom the nearest
     for links in sorted({one.chain.links for one in found}):
@@ -266,22 +275,28 @@ def fitted(
     Where they remain far, those of fewer links than `links` grow by dyads, and the best are moved and refined again, in
     so many `rounds`; in zero for whoever waits for a first answer.
     """
-    return _fitted(matches, CurveTarget.of(curve, closed), links, ROUNDS if rounds is None else rounds)
+    return _fitted(matches, CurveTarget.of(curve, closed), links, _rounds(links) if rounds is None else rounds)
+
+
+def _rounds(links: int) -> int:
+    return ROUNDS * (links // 2 - 1)
 
 
 def _fitted(matches: Sequence[AtlasMatch], target: CurveTarget, links: int, rounds: int) -> list[FittedCurve]:
     found = _best(_refined(_begun(matches, target)))
     rng = np.random.default_rng(0)
-    for _ in range(rounds):
-        if not found or min(part.cost.min() for part in found) < NEAR:
+    moved, grown = Counter[tuple[CurveChain, bytes]](), Counter[tuple[CurveChain, bytes]]()
+    for k in range(rounds):
+        if not found or min(part.cost.min() for part in found) < NEAR * EASED**k:
             break
-        found = _best([*found, *_refined([*_moved(found, rng), *_grown(found, links, rng)], 0)])
+        found = _best([*found, *_refined([*_moved(found, moved, rng), *_grown(found, links, grown, rng)], 0)])
     return sorted((one for part in _given(found) for one in _laid(part.refined(LAST))), key=lambda one: one.apart)
 
 
 def _refined(begun: Iterable[_RefinedDesigns], early: int = EARLY) -> list[_RefinedDesigns]:
     """Return designs refined, the best of all to the end."""
-    parts = [part.refined(EARLY, early=True) if early and part.target.timing is None else part for part in begun]
+    parts = [part.some(held) for part in begun if (held := part.held).any()]
+    parts = [part.refined(EARLY, early=True) if early and part.target.timing is None else part for part in parts]
     parts = [part.refined(FIRST_STEPS) for part in parts]
     costs = np.sort(np.concatenate([part.cost for part in parts])) if parts else np.zeros(0)
     refined = list[_RefinedDesigns]()
@@ -334,17 +349,34 @@ def _by_chain(parts: Iterable[_RefinedDesigns]) -> list[_RefinedDesigns]:
     return [_joined(each) for each in same.values()]
 
 
-def _nearest(parts: Sequence[_RefinedDesigns], count: int) -> Iterator[_RefinedDesigns]:
-    """Yield the best designs of all, one by one, not many of a chain."""
-    order = sorted((part.cost[k], n, k) for n, part in enumerate(parts) for k in range(min(len(part.x), OF_A_CHAIN)))
-    for _, n, k in order[:count]:
-        yield parts[n].some(np.array([k]))
+def _nearest(
+    parts: Sequence[_RefinedDesigns], count: int, tried: Counter[tuple[CurveChain, bytes]]
+) -> Iterator[_RefinedDesigns]:
+    """Yield the best designs of all, one by one, not many of a chain, and none that came to where a better one is.
+
+    Those that have been `tried` stand back for others that are not much worse.
+    """
+    order = [(part.cost[k] * TIRED ** tried[part.chain, part.x[k].tobytes()], n, k)
+             for n, part in enumerate(parts) for k in range(len(part.x))]  # fmt: skip
+    taken = dict[int, list[float]]()
+    for _, n, k in sorted(order):
+        part, same = parts[n], taken.setdefault(n, [])
+        cost = part.cost[k]
+        if len(same) < OF_A_CHAIN and all(max(cost, other) > APART * min(cost, other) for other in same):
+            same.append(cost)
+            tried[part.chain, part.x[k].tobytes()] += 1
+            yield part.some(np.array([k]))
+            count -= 1
+            if not count:
+                return
 
 
-def _moved(found: Sequence[_RefinedDesigns], rng: np.random.Generator) -> list[_RefinedDesigns]:
+def _moved(
+    found: Sequence[_RefinedDesigns], tried: Counter[tuple[CurveChain, bytes]], rng: np.random.Generator
+) -> list[_RefinedDesigns]:
     """Return the best designs, each moved to several places about."""
     moved = list[_RefinedDesigns]()
-    for one in _nearest(found, MOVED):
+    for one in _nearest(found, MOVED, tried):
         around = scattered(one.x, rng)
         if one.target.timing is not None and one.target.timing.turn:
             around[:, -5] = one.x[:, -5]
@@ -352,10 +384,12 @@ def _moved(found: Sequence[_RefinedDesigns], rng: np.random.Generator) -> list[_
     return [part.some(clear) for part in _by_chain(moved) if (clear := part.chain.curves(part.designs, POSES)[1]).any()]
 
 
-def _grown(found: Sequence[_RefinedDesigns], links: int, rng: np.random.Generator) -> list[_RefinedDesigns]:
+def _grown(
+    found: Sequence[_RefinedDesigns], links: int, tried: Counter[tuple[CurveChain, bytes]], rng: np.random.Generator
+) -> list[_RefinedDesigns]:
     """Return the best designs with a dyad more: of many dyads those that promise most by their first step."""
     grown = list[_RefinedDesigns]()
-    for one in _nearest([part for part in found if part.chain.links + 2 <= links], GROWN):
+    for one in _nearest([part for part in found if part.chain.links + 2 <= links], GROWN, tried):
         promises = list[tuple[float, CurveChain, Number]]()
         for second in one.chain.carriers:
             for sign in (1, -1):

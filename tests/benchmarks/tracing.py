@@ -19,6 +19,11 @@ from compoundkin.dimensional.coupler_atlas import coupler_atlas
 from compoundkin.dimensional.tasks import curve
 
 PLACES = 2000
+# LInK's own for its hand-drawn letters A to Z, with up to twenty joints: alpha_res.npy of ahnobari/LInKGenerator.
+LINK = (
+    0.01885, 0.02341, 0.00816, 0.0065, 0.05377, 0.01172, 0.04319, 0.02209, 0.01637, 0.01124, 0.14694, 0.00814, 0.02199,
+    0.0331, 0.00491, 0.01266, 0.0157, 0.02907, 0.02259, 0.01528, 0.0067, 0.00823, 0.02015, 0.04098, 0.01616, 0.04254,
+)  # fmt: skip
 
 
 def even(z: np.ndarray, closed: bool) -> np.ndarray:
@@ -39,18 +44,20 @@ def chamfer(found: np.ndarray, target: np.ndarray, closed: bool) -> float:
 
 
 def main(path: str, links: int = 8, first: int = 0, last: int | None = None) -> None:
-    """Print each curve, and means; of fewer links too."""
+    """Print each curve, and means; of each number of links the best, and LInK's beside its letters."""
     begun = time.process_time()
     atlas = coupler_atlas(6, curve_fitting.DESIGNS)
     print(f"atlas of {len(atlas)} designs: {time.process_time() - begun:.1f} s of CPU")
     rows: dict[bool, list[tuple[float, float]]] = {True: [], False: []}
-    for k, places in list(enumerate(np.load(path)))[first:last]:
+    curves = np.load(path)
+    theirs = LINK if len(curves) == len(LINK) else ()
+    for k, places in list(enumerate(curves))[first:last]:
         task = curve(places)
         begun = time.process_time()
         near = atlas.near(task.points, curve_fitting.STARTED, closed=task.closed)
         found = curve_fitting.fitted(near, task.points, task.closed, links)
         spent = time.process_time() - begun
-        least = {n: next((one for one in found if one.chain.links == n), None) for n in (4, 6, 8)}
+        least = {n: next((one for one in found if one.chain.links == n), None) for n in range(4, links + 1)}
         parts = []
         for best in least.values():
             if best is None:
@@ -63,7 +70,9 @@ def main(path: str, links: int = 8, first: int = 0, last: int | None = None) -> 
         apart = min(float(part) for part in parts if part.strip() != "-")
         rows[task.closed].append((apart, spent))
         kind = "closed" if task.closed else "open"
-        print(f"{k:4d} {kind:6s} {apart:.5f} {spent:5.1f} s  {' '.join(parts)}  {found[0].chain.title}", flush=True)
+        beside = f"  LInK {theirs[k]:.5f}" if theirs else ""
+        title = found[0].chain.title
+        print(f"{k:4d} {kind:6s} {apart:.5f} {spent:5.1f} s  {' '.join(parts)}{beside}  {title}", flush=True)
     for closed, each in rows.items():
         if each:
             apart, spent = np.array(each).T
