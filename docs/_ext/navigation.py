@@ -26,6 +26,7 @@ CONTENTS: dict[str, tuple[str, ...]] = {
             "composing",
             "synthesis",
             "from-a-sketch",
+            "letters",
             "pictures",
             "animation",
             "plots",
