@@ -18,14 +18,12 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.kinematics.driver_values import RATES, fit, timed
 from compoundkin.kinematics.solution import COUNTED
 from compoundkin.model.attributes import RATES as RATE_WORDS
 from compoundkin.model.elements import Drive
 from compoundkin.programs.call_numbers import COMPLEX, FLOAT, Call, CallNumbers, ReadyProgram, parameter_inputs
 from compoundkin.programs.graph.operation_graph import BEFORE, DRIVE, InputNumber
-from compoundkin.programs.limit_screening import MANY_VALUES, StepProgram, Steps
 from compoundkin.programs.recorded_path import PathVariants
 
 # So many plain numbers are kept as arrays, and so many plans.
@@ -52,12 +50,9 @@ class CallForm(NamedTuple):
         """Return the form of arguments; None where some are of other types than plans can read."""
         form: list[Any] = []
         numbers: list[Any] = []
-        pairs = range(0)
-        for k, one in enumerate(arguments):
+        for one in arguments:
             if type(one) is dict:
                 form.append((dict, *one))
-                if k == DIMENSIONS:
-                    pairs = range(len(numbers), len(numbers) + len(one))
                 numbers += one.values()
             else:
                 numbers.append(one)
@@ -79,7 +74,7 @@ class CallForm(NamedTuple):
                 form.append(None)
             elif kind in NUMBERS:
                 form.append(NUMBERS[kind])
-            elif kind is tuple and k in pairs and _is_point(one):
+            elif kind is tuple and _is_point(one) and _is_dimension(arguments, k):
                 numbers[k] = complex(*one)
                 form.append(tuple)
             else:
@@ -90,6 +85,13 @@ class CallForm(NamedTuple):
 def _is_point(pair: tuple[Any, ...]) -> bool:
     """Tell whether a pair is that of a point: two finite real numbers."""
     return len(pair) == 2 and all(NUMBERS.get(type(x)) is float and -LARGEST_FLOAT <= x <= LARGEST_FLOAT for x in pair)
+
+
+def _is_dimension(arguments: Sequence[Any], k: int) -> bool:
+    """Tell whether a number of a call is a free dimension."""
+    values, dimensions = arguments[VALUES], arguments[DIMENSIONS]
+    before = len(values) if type(values) is dict else 1
+    return type(dimensions) is dict and before <= k < before + len(dimensions)
 
 
 def _array_of_list(values: list[Any]) -> Any:
@@ -243,8 +245,7 @@ class CallPlan(ShortRepr):
 
     `inputs` are the inputs in their order, `shape` is that of the call's arrays, `values` are the places of drivers'
     values among the inputs, by name. `before` are those of the values a pose before, of drivers that a call of one
-    design gives: they stand behind all inputs, in the values' own memory. Where there are many, a copy of them would
-    take a tenth of the call: they are `borrowed` from the caller, by the same names.
+    design gives: they stand behind all inputs, in the values' own memory.
     """
 
     def __init__(self, path: PathVariants, arguments: Sequence[Any], numbers: CallNumbers, array: ArrayOf) -> None:
@@ -275,8 +276,7 @@ class CallPlan(ShortRepr):
         row = (1, self.extent[1])
         laid = {place.inputs[0] for place in self._places if place.rows == row == self.extent != (1, 1)}
         moving = [name for name, k in self.values.items() if k in laid]
-        self.borrowed = {name: self.values[name] for name in moving if row[1] >= MANY_VALUES}
-        self.before = {name: len(self.inputs) + k for k, name in enumerate(moving) if name not in self.borrowed}
+        self.before = {name: len(self.inputs) + k for k, name in enumerate(moving)}
         # by the place where a driver's values go
         self._before = {self.values[name]: k for name, k in self.before.items()}
         self._own += [ZERO] * len(self.before)
@@ -310,9 +310,6 @@ class CallPlan(ShortRepr):
             else:
                 if (before := self._before.get(inputs[0])) is not None:
                     given[before], given[inputs[0]] = place.laid_twice(number)
-                    continue
-                if inputs[0] in self.borrowed.values():
-                    given[inputs[0]] = number.reshape(place.rows)
                     continue
                 if inputs[0] not in values and not _are_finite(number):
                     return None
@@ -412,29 +409,10 @@ class ReadCall:
         self.plan, self.given, self.zero = plan, given, zero
 
     def numbers(self) -> CallNumbers:
-        """Return the inputs by name, to be used while the caller waits: some are borrowed from him."""
+        """Return the inputs by name."""
         plan = self.plan
         # what stands behind the inputs is no number of a call
         return CallNumbers(dict(zip(plan.inputs, self.given, strict=False)), plan.shape, plan.still(self.zero))
-
-    def kept_numbers(self) -> CallNumbers:
-        """Return the inputs by name, to be kept."""
-        given = self.given.copy()
-        for k in self.plan.borrowed.values():
-            given[k] = given[k].copy()
-        return ReadCall(self.plan, given, self.zero).numbers()
-
-    def unchanged_numbers(self, steps: StepProgram, found: Mapping[str, Steps]) -> CallNumbers:
-        """Return the inputs by name after the call.
-
-        Raises InvalidInput where borrowed ones have other marks now than were `found`.
-        """
-        numbers = self.kept_numbers()
-        for name, k in self.plan.borrowed.items():
-            if steps.found(self.given[k]).mark != found[name].mark:
-                what = "the array was changed after the call, whose values are no longer known"
-                raise InvalidInput(Problem(f"values.{name}", what, "solve the mechanism with the values that you want"))
-        return numbers
 
     def is_finite(self) -> bool:
         """Tell whether the drivers' values are finite; all else is."""

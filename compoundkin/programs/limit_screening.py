@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -24,15 +24,7 @@ from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, numbers_of_designs
-from compoundkin.programs.graph.operation_graph import (
-    DIMENSION,
-    DRIVE,
-    HOLDS,
-    LEAST,
-    TOTAL,
-    InputNumber,
-    OperationGraph,
-)
+from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, HOLDS, LEAST, InputNumber, OperationGraph
 from compoundkin.programs.recording.recorded_limits import CLOSE, RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import Recording, record_mechanism
 
@@ -83,13 +75,6 @@ def _longest_step(value: Number) -> float:
 MANY_VALUES = 4_096
 
 
-class Steps(NamedTuple):
-    """The longest step from pose to pose, and a number that tells values, in their order, from changed ones."""
-
-    longest: float
-    mark: float
-
-
 class StepProgram(ShortRepr):
     """A program of the longest step of a driver from pose to pose, for many poses."""
 
@@ -97,25 +82,20 @@ class StepProgram(ShortRepr):
         self.backend = backend
         self._ready: dict[bool, ReadyProgram[str]] = {}
 
-    def found(self, value: Number) -> Steps:
-        """Return the longest step among a driver's values, (1 or designs, poses), and their mark."""
+    def longest(self, value: Number) -> float:
+        """Return the longest step among a driver's values, (1 or designs, poses)."""
         designs, poses = value.shape
         if (designs > 1) not in self._ready:
             self._ready[designs > 1] = self._made(value)
         # a step has no sign: the order of the two makes no difference
-        least, mark = self._ready[designs > 1].computed([value[:, :-1], value[:, 1:]], (designs, poses - 1))
-        return Steps(-float(least.item() if least.size == 1 else least.min()), float(mark.item(0)))
+        (least,) = self._ready[designs > 1].computed([value[:, :-1], value[:, 1:]], (designs, poses - 1))
+        return -float(least.item() if least.size == 1 else least.min())
 
     def _made(self, value: Number) -> ReadyProgram[str]:
         graph = OperationGraph()
         ends = [InputNumber(DRIVE, "", part) for part in ("before", "after")]
         numbers = CallNumbers(dict.fromkeys(ends, value), value.shape, frozenset())
-        before, after = map(graph.input, ends)
-        # x + y + x y^2: the same values in another order have another sum
-        product = graph.apply("mul", before, graph.apply("mul", after, after))
-        mark = graph.apply(TOTAL, graph.apply("add", graph.apply("add", before, after), product))
-        nodes = {"": (longest_step(graph, before, after),), "mark": (mark,)}
-        return ReadyProgram.of(graph, nodes, numbers, self.backend)
+        return ReadyProgram.of(graph, {"": (longest_step(graph, *map(graph.input, ends)),)}, numbers, self.backend)
 
 
 def longest_step(graph: OperationGraph, before: int, value: int) -> int:
@@ -136,12 +116,12 @@ class LimitScreening(ShortRepr):
         values: Mapping[str, Number],
         least: Number,
         numbers: Callable[[], CallNumbers],
-        steps: Mapping[str, float] = MappingProxyType({}),
+        steps: Mapping[str, Number] = MappingProxyType({}),
     ) -> bool:
         """Tell whether surely no design needs screening, as `needed` finds out of all of them.
 
         `numbers` gives those of the call, where the drivers' values are not enough to know; `steps` are the longest of
-        drivers, as far as they are known.
+        drivers, less than zero, as far as a program computed them beside.
         """
         margin = least.item() if least.size == 1 else float(least.min())
         return (
@@ -154,23 +134,22 @@ class LimitScreening(ShortRepr):
     def _clear(self) -> ClearApproaches:
         return ClearApproaches(self.approach)
 
-    def _safe_margin(self, values: Mapping[str, Number], steps: Mapping[str, float] = MappingProxyType({})) -> float:
+    def _safe_margin(self, values: Mapping[str, Number], steps: Mapping[str, Number] = MappingProxyType({})) -> float:
         return float(safe_margin(max(1.0, self._longest_step(values, steps))))
 
-    def _longest_step(self, values: Mapping[str, Number], steps: Mapping[str, float] = MappingProxyType({})) -> float:
+    def _longest_step(self, values: Mapping[str, Number], steps: Mapping[str, Number] = MappingProxyType({})) -> float:
         """Return the longest step of a driver, in its spacing."""
         longest = 0.0
         for name, value in values.items():
             if name in steps:
-                longest = max(longest, steps[name] / self._spacings[name])
+                longest = max(longest, -steps[name].item() / self._spacings[name])
             elif value.shape[1] > 1:
-                step = _longest_step(value) if value.size < MANY_VALUES else self.steps.found(value).longest
+                step = _longest_step(value) if value.size < MANY_VALUES else self._steps.longest(value)
                 longest = max(longest, step / self._spacings[name])
         return min(longest, float(MOST))
 
     @cached_property
-    def steps(self) -> StepProgram:
-        """The program of longest steps."""
+    def _steps(self) -> StepProgram:
         return StepProgram(self.backend)
 
     @cached_property

@@ -163,17 +163,11 @@ class PathPrograms(ShortRepr):
             program = read.plan.program(None, read, LEAST, partial(self._program_of_inputs, tuple(before)))
             if program is not None:
                 given = {} if out is None else self._arrays_of(out, program.vectors, read.plan.shape)
-                steps, kept = dict[str, float](), read.numbers
-                if borrowed := read.plan.borrowed:
-                    # first, as results drive values out of the caches
-                    found = {name: self.limits.steps.found(read.given[k]) for name, k in borrowed.items()}
-                    steps = {name: one.longest for name, one in found.items()}
-                    kept = partial(read.unchanged_numbers, self.limits.steps, found)
                 arrays, count = program.run(read, threads, given), len(self.names)
-                steps |= {name: -arrays[count + k].item() for k, name in enumerate(before, 1)}
-                arrays, least = arrays[:count], arrays[count]
+                least, steps = arrays[count], dict(zip(before, arrays[count + 1 :], strict=True))
+                arrays = arrays[:count]
                 if self.limits.is_clear(read.driver_values, least, read.numbers, steps):
-                    return self.path_values(kept, arrays, None, read.plan.shape)
+                    return self.path_values(read.numbers, arrays, None, read.plan.shape)
                 # a full reading reports values that are not finite
                 return self.checked_values(self.numbers(call), arrays, least)
         check_threads(threads)
@@ -195,7 +189,7 @@ class PathPrograms(ShortRepr):
         """Return the numbers of a call, perhaps with the slopes of laws; raises InvalidInput for what does not fit."""
         read = self.plans.read(call)
         if read is not None and read.is_finite():
-            numbers = read.kept_numbers()
+            numbers = read.numbers()
             return self.seeds.added(self.variant(numbers.still), numbers)
         return self._read_in_full(call, with_slopes)
 

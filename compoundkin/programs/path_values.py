@@ -95,8 +95,8 @@ class PathValues(Mapping[str, Any]):
     def motion(self, design: int = 0) -> Motion:
         """Return one design solved by `solve`, which reports failures with their reasons.
 
-        `design` counts along all axes but the last. Raises InvalidInput for an index out of range, or where the caller
-        has changed his array of driver values since; NotAssembled for a design without an assembled pose.
+        `design` counts along all axes but the last. Raises InvalidInput for an index out of range, NotAssembled
+        for a design without an assembled pose.
 
         >>> import compoundkin as ck
         >>> found = ck.compile(ck.load("slider-crank"), "B")()
