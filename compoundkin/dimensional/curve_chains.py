@@ -251,11 +251,13 @@ def turn(poses: int) -> Number:
     return np.arange(poses) * (TURN / poses)
 
 
-def _length(name: str, between: tuple[float, float] = LENGTHS) -> FreeNumber:
+def length_number(name: str, between: tuple[float, float] = LENGTHS) -> FreeNumber:
+    """Return the number of a length."""
     return FreeNumber(name, *between, True)
 
 
-def _place(link_name: str, letter: str) -> list[FreeNumber]:
+def place_numbers(link_name: str, letter: str) -> list[FreeNumber]:
+    """Return the numbers of a point on its link."""
     point = f"{link_name}.{letter}"
     return [FreeNumber(name, *PLACES, False, point) for name in component_names(point)]
 
@@ -341,9 +343,9 @@ def curve_chain(plan: ChainPlan) -> CurveChain:
         on_first, on_second = (dyad.first, names.on_first), (dyad.second, names.on_second)
         for (name, letter), place in zip((on_first, on_second), names.places, strict=True):
             points.setdefault(name, {})[letter] = place
-            added += _place(name, letter)
+            added += place_numbers(name, letter)
         points.setdefault(names.rod, {})
-        added += [_length(component_names(f"{name}.{names.joint}")[0]) for name in (names.rod, names.lever)]
+        added += [length_number(component_names(f"{name}.{names.joint}")[0]) for name in (names.rod, names.lever)]
     points.setdefault(plan.traced, {})[POINT] = _POINT
     items, numbers = _base(plan, points)
     for names, dyad in zip(_NAMES, plan.dyads, strict=False):
@@ -352,7 +354,7 @@ def curve_chain(plan: ChainPlan) -> CurveChain:
         items.append(mode(dyad.sign, names.lever))
     title = _title(plan)
     mechanism = Mechanism(title, *items, drive(CRANK))
-    return CurveChain(plan, title, mechanism, (*numbers, *added, *_place(plan.traced, POINT)))
+    return CurveChain(plan, title, mechanism, (*numbers, *added, *place_numbers(plan.traced, POINT)))
 
 
 def _title(plan: ChainPlan) -> str:
@@ -377,13 +379,16 @@ def _base(plan: ChainPlan, extra: dict[str, dict[str, complex]]) -> tuple[list[I
         return link(name, **own, **extra.get(name, {}))
 
     crank, coupler = points(CRANK, A=0, B=0.5), points(COUPLER, B=0, C=2)
-    numbers = [_length("crank.B.x", CRANKS), _length("coupler.C.x")]
+    numbers = [length_number("crank.B.x", CRANKS), length_number("coupler.C.x")]
     if plan.base == SLIDER_CRANK:
         sliding: list[Item] = [link(SLIDER, C=0), guide(0.0, 0.3), mode(1, SLIDER)]
         return [points(FRAME, A=0), crank, coupler, *sliding], [*numbers, FreeNumber(GUIDE_OFFSET, *OFFSETS, False)]
     frame = points(FRAME, A=0, D=2)
     if plan.base == FOUR_BAR:
-        return [frame, crank, coupler, points(ROCKER, D=0, C=2), mode(1, ROCKER)], [*numbers, _length("rocker.C.x")]
+        return [frame, crank, coupler, points(ROCKER, D=0, C=2), mode(1, ROCKER)], [
+            *numbers,
+            length_number("rocker.C.x"),
+        ]
     second: list[Item] = [
         points(SECOND_CRANK, D=0, E0=0.3 + 0.3j),
         points(BAR, E0=0, C=2),
@@ -392,4 +397,4 @@ def _base(plan: ChainPlan, extra: dict[str, dict[str, complex]]) -> tuple[list[I
     ]
     ends = [FreeNumber(name, -CRANKS[1], CRANKS[1], False, f"{SECOND_CRANK}.E0")
             for name in component_names(f"{SECOND_CRANK}.E0")]  # fmt: skip
-    return [frame, crank, coupler, *second], [*numbers, _length("bar.C.x"), *ends]
+    return [frame, crank, coupler, *second], [*numbers, length_number("bar.C.x"), *ends]

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice
-from typing import Protocol, Self, TypeAlias, TypeVar
+from typing import NamedTuple, Protocol, Self, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -115,6 +115,28 @@ class RefinedDesigns(Protocol):
 
 
 Designs = TypeVar("Designs", bound=RefinedDesigns)
+
+
+class RefinementPlan(NamedTuple):
+    """How many `steps` all designs take, how many of the `best` of all go on, and how many steps `more` these take.
+
+    In so many `rounds` the best are then moved and refined again.
+    """
+
+    steps: int
+    best: int
+    more: int
+    rounds: int
+
+
+def best_designs(begun: Iterable[Designs], plan: RefinementPlan) -> list[Designs]:
+    """Return the best designs of all, and the best of each chain, refined."""
+    found = best_refined([one.refined(plan.steps) for one in begun], plan.best, plan.more)
+    rng = np.random.default_rng(0)
+    for _ in range(plan.rounds):
+        moved = [one.refined(plan.steps) for one in best_moved(found, rng)]
+        found = best_refined([*found, *moved], plan.best, plan.more)
+    return found
 
 
 def best_refined(parts: Sequence[Designs], count: int, steps: int) -> list[Designs]:

@@ -25,10 +25,8 @@ from compoundkin.dimensional.curve_chains import (
     CRANKS,
     FOUR_BAR,
     GUIDE,
-    LENGTHS,
     LEVER,
     OFFSETS,
-    PLACES,
     ROCKER,
     ROD,
     SLIDER,
@@ -37,19 +35,21 @@ from compoundkin.dimensional.curve_chains import (
     CurveChain,
     FreeNumber,
     Laying,
+    length_number,
+    place_numbers,
     turn,
 )
 from compoundkin.dimensional.curve_conditions import keeps_transmission
 from compoundkin.dimensional.design_refinement import (
     GIVEN,
-    best_moved,
-    best_refined,
+    RefinementPlan,
+    best_designs,
     different_verdicts,
     ranked,
     refined,
 )
 from compoundkin.dimensional.tasks import FunctionTask
-from compoundkin.model.attributes import ANGLE, VALUE, component_names
+from compoundkin.model.attributes import ANGLE, VALUE
 from compoundkin.model.elements import Item, drive, link, mode
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
@@ -175,7 +175,7 @@ def _chain(base: str, first: str = "", end: str = "", sign: int = 1) -> Function
     extra: dict[str, dict[str, complex]] = {first: {"E": 1.0 + 1.0j}} if first else {}
     if end == LEVER:
         extra[FRAME] = {"F": 0.5 + 1.5j}
-    numbers = [_length("crank.B.x", CRANKS), _length("coupler.C.x")]
+    numbers = [length_number("crank.B.x", CRANKS), length_number("coupler.C.x")]
     pivots: dict[str, complex] = {"A": 0j} if base == SLIDER_CRANK else {"A": 0j, "D": 2 + 0j}
     items: list[Item] = [
         link(FRAME, **pivots, **extra.get(FRAME, {})),
@@ -189,30 +189,21 @@ def _chain(base: str, first: str = "", end: str = "", sign: int = 1) -> Function
         output = f"{GUIDE}.{VALUE}"
     else:
         items += [link(ROCKER, D=0, C=2, **extra.get(ROCKER, {})), mode(1, ROCKER)]
-        numbers.append(_length("rocker.C.x"))
+        numbers.append(length_number("rocker.C.x"))
     if first:
         title = _TITLES[base, first, end]
         items += [link(ROD, E=0, G=2.5), link(end, G=0) if end == RAM else link(end, F=0, G=2.5), mode(sign, end)]
-        numbers += [*_place(first, "E"), _length("rod.G.x")]
+        numbers += [*place_numbers(first, "E"), length_number("rod.G.x")]
         if end == RAM:
             items.append(_slide(WAY, RAM, "G", 0.4, 0.3))
             numbers += [FreeNumber(f"{WAY}.{ANGLE}", -np.pi / 2, np.pi / 2, False)]
             numbers += [FreeNumber(f"{WAY}.offset", *OFFSETS, False)]
             output = f"{WAY}.{VALUE}"
         else:
-            numbers += [*_place(FRAME, "F"), _length("lever.G.x")]
+            numbers += [*place_numbers(FRAME, "F"), length_number("lever.G.x")]
             output = f"{LEVER}.{ANGLE}"
     mechanism = Mechanism(title, *items, drive(CRANK))
     return FunctionChain(ChainPlan(base, (), COUPLER), title, mechanism, tuple(numbers), output)
-
-
-def _length(name: str, between: tuple[float, float] = LENGTHS) -> FreeNumber:
-    return FreeNumber(name, *between, True)
-
-
-def _place(link_name: str, letter: str) -> list[FreeNumber]:
-    point = f"{link_name}.{letter}"
-    return [FreeNumber(name, *PLACES, False, point) for name in component_names(point)]
 
 
 # --- the atlas of outputs -------------------------------------------------------------------------------------
@@ -394,11 +385,8 @@ def sampled_function(task: FunctionTask) -> Candidates:
     """Return the linkages of at most `task.links` links whose output comes nearest to a task's pairs."""
     wanted, is_angle = WantedFunction.of(task), task.linkage != "slider-crank"
     parts = chain_outputs(task.links, DESIGNS, is_angle)
-    found = [one.refined(FIRST_STEPS) for part in parts for one in _begun(part, wanted)]
-    found, rng = best_refined(found, BEST, STEPS), np.random.default_rng(0)
-    for _ in range(ROUNDS):
-        moved = [one.refined(FIRST_STEPS) for one in best_moved(found, rng)]
-        found = best_refined([*found, *moved], BEST, STEPS)
+    begun = (one for part in parts for one in _begun(part, wanted))
+    found = best_designs(begun, RefinementPlan(FIRST_STEPS, BEST, STEPS, ROUNDS))
     verdicts = different_verdicts((part.linkage(k) for part, k in ranked(found)), task, GIVEN)
     designs = sum(len(part.designs) for part in parts)
     complete = f"the best {len(verdicts)} of {designs} designs of {len(parts)} chains, refined"

@@ -22,8 +22,8 @@ from compoundkin.dimensional.curve_chains import CRANK, CurveChain, Laying, turn
 from compoundkin.dimensional.curve_conditions import keeps_transmission
 from compoundkin.dimensional.design_refinement import (
     GIVEN,
-    best_moved,
-    best_refined,
+    RefinementPlan,
+    best_designs,
     different_verdicts,
     ranked,
     refined,
@@ -328,11 +328,8 @@ def sampled_motion(task: PoseTask) -> Candidates:
     """Return the linkages of at most `task.links` links that come nearest to a course of poses."""
     course = WantedMotion.of(task)
     parts = _courses(task.links, DESIGNS)
-    found = [one.refined(FIRST_STEPS) for part in parts for one in _begun(part, course)]
-    found, rng = best_refined(found, BEST, STEPS), np.random.default_rng(0)
-    for _ in range(ROUNDS):
-        moved = [one.refined(FIRST_STEPS) for one in best_moved(found, rng)]
-        found = best_refined([*found, *moved], BEST, STEPS)
+    begun = (one for part in parts for one in _begun(part, course))
+    found = best_designs(begun, RefinementPlan(FIRST_STEPS, BEST, STEPS, ROUNDS))
     verdicts = different_verdicts((part.linkage(k, task) for part, k in ranked(found)), task, GIVEN)
     designs = sum(len(part.designs) for part in parts)
     complete = f"the best {len(verdicts)} of {designs} designs of {len(parts)} chains, refined"
