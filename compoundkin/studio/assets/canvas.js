@@ -1,5 +1,6 @@
 // The drawing as SVG: made anew when the structure changes, only moved while it moves. Also what lies under a pointer.
-const SVG = "http://www.w3.org/2000/svg";
+import { svgElement } from "./elements.js";
+
 const NEAR_PIN = 12, NEAR_BAR = 9, MARGIN = 70;
 // Directions in which a letter may stand about its point, the usual first, and how far from it; it leaves one when a
 // bar comes nearer than HELD, in radians, and takes the first in which none is nearer than FREE.
@@ -13,7 +14,7 @@ const KEPT = ["below", "above"];
 // A layer of the drawing. Each picture tells all its elements in order; those of the last one are used again.
 class Layer {
   constructor(name, svg) {
-    this.root = made("g", { class: `layer-${name}` }, svg);
+    this.root = svgElement("g", { class: `layer-${name}` }, svg);
     this.held = [];
     this.used = 0;
   }
@@ -23,7 +24,7 @@ class Layer {
   put(name, attributes, text) {
     let one = this.held[this.used];
     if (one?.name !== name) {
-      const node = made(name, {});
+      const node = svgElement(name, {});
       if (one) one.node.replaceWith(node);
       else this.root.append(node);
       one = this.held[this.used] = { name, node, attributes: {}, text: "" };
@@ -38,12 +39,6 @@ class Layer {
   end() { for (const { node } of this.held.splice(this.used)) node.remove(); }
 }
 
-const made = (name, attributes, parent) => {
-  const node = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
-  parent?.append(node);
-  return node;
-};
 const colour = (k) => (k === null || k === undefined ? "" : ` c${k === 0 ? 0 : ((k - 1) % 7) + 1}`);
 const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
 
@@ -98,7 +93,7 @@ export class Canvas {
     this.sides = new Map();
     this.photo = null;
     this.layers = ["below", "traces", "guides", "shapes", "links", "marks", "pins", "letters", "above"];
-    for (const name of this.layers) this[name] = KEPT.includes(name) ? made("g", { class: `layer-${name}` }, svg) : new Layer(name, svg);
+    for (const name of this.layers) this[name] = KEPT.includes(name) ? svgElement("g", { class: `layer-${name}` }, svg) : new Layer(name, svg);
     // who changes what is drawn before it is, and who draws above it
     this.before = [];
     this.after = [];
@@ -393,7 +388,7 @@ export class Canvas {
     if (!photo) { this.below.replaceChildren(); return; }
     const [x, y] = this.screen([photo.x, photo.y]), by = photo.scale * this.view.scale;
     let image = this.below.firstChild;
-    if (!image) image = made("image", { preserveAspectRatio: "none" }, this.below);
+    if (!image) image = svgElement("image", { preserveAspectRatio: "none" }, this.below);
     if (image.getAttribute("href") !== photo.href) image.setAttribute("href", photo.href);
     for (const [key, value] of Object.entries({ x, y, width: photo.wide * by, height: photo.high * by, opacity: photo.opacity })) image.setAttribute(key, value);
   }
@@ -507,13 +502,13 @@ export class Canvas {
     const far = Math.hypot(...this.size);
     for (const one of snaps) {
       const [x, y] = this.screen(one.at);
-      if (one.along) made("path", { d: `M${x - far * one.along[0]} ${y + far * one.along[1]}L${x + far * one.along[0]} ${y - far * one.along[1]}`, class: "snap" }, this.above);
-      else made("circle", { cx: x, cy: y, r: one.radius * this.view.scale, class: "snap" }, this.above);
+      if (one.along) svgElement("path", { d: `M${x - far * one.along[0]} ${y + far * one.along[1]}L${x + far * one.along[0]} ${y - far * one.along[1]}`, class: "snap" }, this.above);
+      else svgElement("circle", { cx: x, cy: y, r: one.radius * this.view.scale, class: "snap" }, this.above);
     }
-    if (guide) made("path", { d: `M${guide.at[0] - far * Math.cos(guide.angle)} ${guide.at[1] + far * Math.sin(guide.angle)}L${guide.at[0] + far * Math.cos(guide.angle)} ${guide.at[1] - far * Math.sin(guide.angle)}`, class: "snap" }, this.above);
-    if (box) made("rect", { x: Math.min(box[0][0], box[1][0]), y: Math.min(box[0][1], box[1][1]), width: Math.abs(box[0][0] - box[1][0]), height: Math.abs(box[0][1] - box[1][1]), class: "box" }, this.above);
-    if (from && to) made("line", { x1: from[0], y1: from[1], x2: to[0], y2: to[1], class: "rubber" }, this.above);
-    if (ring) made("circle", { cx: ring[0], cy: ring[1], r: 15, class: "ring" }, this.above);
-    if (words && to) made("text", { x: to[0] + 16, y: to[1] + 24 }, this.above).textContent = words;
+    if (guide) svgElement("path", { d: `M${guide.at[0] - far * Math.cos(guide.angle)} ${guide.at[1] + far * Math.sin(guide.angle)}L${guide.at[0] + far * Math.cos(guide.angle)} ${guide.at[1] - far * Math.sin(guide.angle)}`, class: "snap" }, this.above);
+    if (box) svgElement("rect", { x: Math.min(box[0][0], box[1][0]), y: Math.min(box[0][1], box[1][1]), width: Math.abs(box[0][0] - box[1][0]), height: Math.abs(box[0][1] - box[1][1]), class: "box" }, this.above);
+    if (from && to) svgElement("line", { x1: from[0], y1: from[1], x2: to[0], y2: to[1], class: "rubber" }, this.above);
+    if (ring) svgElement("circle", { cx: ring[0], cy: ring[1], r: 15, class: "ring" }, this.above);
+    if (words && to) svgElement("text", { x: to[0] + 16, y: to[1] + 24 }, this.above).textContent = words;
   }
 }

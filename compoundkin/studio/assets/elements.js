@@ -7,6 +7,13 @@ export const element = (name, text, attributes = {}, ...inner) => {
   return node;
 };
 
+export const svgElement = (name, attributes = {}, parent = null) => {
+  const node = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+  parent?.append(node);
+  return node;
+};
+
 export const labelled = (words, field) => element("p", "", { class: "field" }, element("label", words, { for: field.id }), field);
 
 // the package's own HTML: its texts are escaped there, and scripts are forbidden here

@@ -1,7 +1,6 @@
 // A curve drawn by hand, and the linkages that trace it: the nearest of an atlas at once, better ones as they come.
-import { element, parts } from "./elements.js";
+import { element, parts, svgElement } from "./elements.js";
 
-const SVG = "http://www.w3.org/2000/svg";
 // A curve is closed when it ends so near to its beginning, in pixels, or in parts of its length; one that is shorter is
 // none. Points are sent evenly along it, so many. A thumbnail is so wide and high.
 const CLOSE = 26, CLOSER = 0.06, SHORTEST = 60, SENT = 120, WIDE = 160, HIGH = 120, MARGIN = 8;
@@ -11,12 +10,6 @@ const STEPS = [
   ["traced", "Searched, refined and verified."],
 ];
 
-const drawn = (name, attributes, parent) => {
-  const node = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
-  parent.append(node);
-  return node;
-};
 const gap = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
 const path = (places, isClosed) => (places.length ? `M${places.map((one) => one.map((n) => n.toFixed(1)).join(" ")).join("L")}${isClosed ? "Z" : ""}` : "");
 const length = (places) => places.reduce((sum, one, k) => sum + (k ? gap(places[k - 1], one) : 0), 0);
@@ -42,7 +35,7 @@ export class Pen {
     // the curve in the plane of the mechanism; `round` counts searches: replies of an older one are not shown
     Object.assign(this, { studio, places: [], isClosed: true, isDone: false, suggestions: [], chosen: null, round: 0 });
     this.part = parts(root);
-    this.layer = drawn("g", { class: "layer-pen" }, studio.canvas.svg);
+    this.layer = svgElement("g", { class: "layer-pen" }, studio.canvas.svg);
     studio.canvas.after.push(() => this.#draw());
     this.#build();
   }
@@ -166,14 +159,13 @@ export class Pen {
     const [[left, right], [low, top]] = [0, 1].map((axis) => { const own = all.map((one) => one[axis]); return [Math.min(...own), Math.max(...own)]; });
     const scale = Math.min((WIDE - 2 * MARGIN) / (right - left || 1), (HIGH - 2 * MARGIN) / (top - low || 1));
     const at = ([x, y]) => [WIDE / 2 + (x - (left + right) / 2) * scale, HIGH / 2 - (y - (low + top) / 2) * scale];
-    const svg = document.createElementNS(SVG, "svg");
-    for (const [key, value] of Object.entries({ viewBox: `0 0 ${WIDE} ${HIGH}`, "aria-hidden": "true" })) svg.setAttribute(key, value);
-    drawn("path", { d: path(this.places.map(at), this.isClosed), class: "sketched" }, svg);
-    drawn("path", { d: path(line.map(at), false), class: "traced" }, svg);
-    for (const letters of bars) drawn("path", { d: path(letters.map((one) => at(points[one])), letters.length > 2), class: "rod-of" }, svg);
+    const svg = svgElement("svg", { viewBox: `0 0 ${WIDE} ${HIGH}`, "aria-hidden": "true" });
+    svgElement("path", { d: path(this.places.map(at), this.isClosed), class: "sketched" }, svg);
+    svgElement("path", { d: path(line.map(at), false), class: "traced" }, svg);
+    for (const letters of bars) svgElement("path", { d: path(letters.map((one) => at(points[one])), letters.length > 2), class: "rod-of" }, svg);
     for (const [letter, place] of Object.entries(points)) {
       const [x, y] = at(place);
-      drawn("circle", { cx: x, cy: y, r: letter === "P" ? 3.4 : 2.4, class: letter === "P" ? "tracing" : ground.includes(letter) ? "fixed" : "joint" }, svg);
+      svgElement("circle", { cx: x, cy: y, r: letter === "P" ? 3.4 : 2.4, class: letter === "P" ? "tracing" : ground.includes(letter) ? "fixed" : "joint" }, svg);
     }
     return svg;
   }
@@ -194,6 +186,6 @@ export class Pen {
   #draw() {
     this.layer.replaceChildren();
     if (this.places.length < 2) return;
-    drawn("path", { d: path(this.places.map((one) => this.studio.canvas.screen(one)), this.isDone && this.isClosed), class: "sketched" }, this.layer);
+    svgElement("path", { d: path(this.places.map((one) => this.studio.canvas.screen(one)), this.isDone && this.isClosed), class: "sketched" }, this.layer);
   }
 }

@@ -1,18 +1,10 @@
 // What was found of the mechanism: plots, reports, configurations, circuits; velocities and instant centres on the
 // canvas; opening and exporting. Each is asked when somebody looks at it, after the motion is there.
-import { element, fragment, labelled, parts } from "./elements.js";
+import { element, fragment, labelled, parts, svgElement } from "./elements.js";
 
-const SVG = "http://www.w3.org/2000/svg";
 const LONGEST = 110, DOT = 4; // pixels: the longest velocity, the dot of a centre
 const COLOUR = { centres: "var(--bad)", velocities: "var(--good)", load: "var(--bad)", force: "var(--ink)" };
 const SWEEP = 2.6, ROUND = 20, FAINT = 0.02; // the arc of a moment, and parts of the greatest that are not drawn
-
-const drawn = (name, attributes, parent) => {
-  const node = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
-  parent.append(node);
-  return node;
-};
 
 const offered = (name, content, type) => {
   const address = URL.createObjectURL(new Blob([content], { type }));
@@ -26,7 +18,7 @@ const offered = (name, content, type) => {
 export class Results {
   constructor(root, studio) {
     Object.assign(this, { studio, part: parts(root), shown: {}, chosen: [], words: null });
-    this.layer = drawn("g", { class: "layer-found" }, studio.canvas.svg);
+    this.layer = svgElement("g", { class: "layer-found" }, studio.canvas.svg);
     this.#build();
     studio.canvas.after.push(() => this.#draw());
   }
@@ -206,9 +198,9 @@ export class Results {
         const at = canvas.screen([xs[k], ys[k]]), [wide, high] = canvas.size;
         if (at[0] < 0 || at[1] < 0 || at[0] > wide || at[1] > high) continue;
         const isPin = Object.keys(canvas.structure.points).map((one) => canvas.at(one)).some((one) => one && Math.hypot(one[0] - at[0], one[1] - at[1]) < 2);
-        const dot = drawn("circle", { cx: at[0], cy: at[1], r: DOT, class: "centre", fill: COLOUR.centres }, this.layer);
-        drawn("title", {}, dot).textContent = `Instant centre of ${links}`;
-        if (!isPin) drawn("text", { x: at[0] + 7, y: at[1] + 14, class: "centre-name" }, this.layer).textContent = links.split(", ").join("–");
+        const dot = svgElement("circle", { cx: at[0], cy: at[1], r: DOT, class: "centre", fill: COLOUR.centres }, this.layer);
+        svgElement("title", {}, dot).textContent = `Instant centre of ${links}`;
+        if (!isPin) svgElement("text", { x: at[0] + 7, y: at[1] + 14, class: "centre-name" }, this.layer).textContent = links.split(", ").join("–");
       }
     }
   }
@@ -223,17 +215,17 @@ export class Results {
 
   // on paper, so that it is told from the bar that it lies on
   #outlined(d, style, stroke) {
-    drawn("path", { d, class: `${style} under` }, this.layer);
-    drawn("path", { d, class: style, stroke }, this.layer);
+    svgElement("path", { d, class: `${style} under` }, this.layer);
+    svgElement("path", { d, class: style, stroke }, this.layer);
   }
 
   // what acts at a pose: arrows to one scale, arcs of moments to none, each with its name, left of its tip, and its words
   #forces({ arrows, arcs, greatest, unit }, k) {
     const { canvas } = this.studio, known = ({ at: [xs, ys] }) => xs[k] !== null && canvas.screen([xs[k], ys[k]]);
     const named = (text, words, [x, y]) => {
-      const node = drawn("text", { x, y, class: "force-name", "text-anchor": "middle" }, this.layer);
+      const node = svgElement("text", { x, y, class: "force-name", "text-anchor": "middle" }, this.layer);
       node.textContent = text;
-      drawn("title", {}, node).textContent = words;
+      svgElement("title", {}, node).textContent = words;
     };
     for (const one of arrows) {
       const at = known(one), v = [one.force[0][k], one.force[1][k]], long = Math.hypot(...v);
@@ -257,7 +249,7 @@ export class Results {
     const gap = canvas.pose !== null && this.studio.motion?.gaps?.find((one) => one.from <= canvas.pose && canvas.pose <= one.to);
     for (const { point, radius } of gap?.circles ?? []) {
       const at = canvas.at(point);
-      if (at) drawn("circle", { cx: at[0], cy: at[1], r: radius * canvas.view.scale, class: "missed" }, this.layer);
+      if (at) svgElement("circle", { cx: at[0], cy: at[1], r: radius * canvas.view.scale, class: "missed" }, this.layer);
     }
   }
 
