@@ -155,7 +155,8 @@ class CouplerAtlas(ShortRepr):
         """Return designs near a curve, complex (places,) or (places, 2), of different shapes, the nearest first.
 
         They are the nearest over rotation, size, start (in parts of the arc), direction and mirror image, none is
-        missed: bounds by the magnitudes of coefficients say where correlations need not be looked at. A curve whose
+        missed: bounds by the magnitudes of coefficients say where correlations need not be looked at. They are fewer
+        than `count` where sixteen times as many have no more different shapes. A curve whose
         ends do not meet is `closed` False: it is held against parts of the designs' curves.
 
         Those of at most so many `links`, without `sliders`, whose lengths sum to `size` at most, with all fixed pivots
@@ -455,12 +456,11 @@ def best_laid(z: Number, targets: Number, parts: Number | None = None) -> tuple[
             best = np.where(np.abs(found) > np.abs(best), found, best)
         return *_scaled(best, own, targets), None
     whole, angles = np.hstack([z, z[:, :1]]), np.arange(z.shape[1] + 1) * (TURN / z.shape[1])
-    along = np.hstack([np.zeros((len(z), 1)), np.cumsum(np.abs(np.diff(whole, axis=1)), axis=1)])
-    along /= along[:, -1:]
-    ends = _interpolated(np.stack([parts[:, 0], parts.sum(axis=1)], axis=-1) % 1.0, along, angles)
+    along = arc_parts(whole)
+    ends = interpolated_rows(np.stack([parts[:, 0], parts.sum(axis=1)], axis=-1) % 1.0, along, angles)
     window = np.stack([ends[:, 0], (ends[:, 1] - ends[:, 0]) % TURN], axis=-1)
     at = (window[:, :1] + window[:, 1:] * np.linspace(0.0, 1.0, z.shape[1])) % TURN
-    return *part_laid(_interpolated(at, np.broadcast_to(angles, whole.shape), whole, TURN), targets), window
+    return *part_laid(interpolated_rows(at, np.broadcast_to(angles, whole.shape), whole, TURN), targets), window
 
 
 def part_laid(z: Number, targets: Number) -> tuple[Number, Number]:
@@ -469,13 +469,6 @@ def part_laid(z: Number, targets: Number) -> tuple[Number, Number]:
     forth, back = (on_target(sense, targets) for sense in (own, own[:, ::-1]))
     is_forth = np.abs(forth[0]) >= np.abs(back[0])
     return np.where(is_forth, forth[0], back[0]), np.where(is_forth, forth[1], back[1])
-
-
-def _interpolated(at: Number, x: Number, y: Number, long: float = 1.0) -> Number:
-    """Return rows of y over x at places from 0 to `long`, each row by itself in one interpolation."""
-    rows = 2.0 * long * np.arange(len(x))[:, None]
-    y = np.broadcast_to(y, x.shape)
-    return np.interp((rows + at).ravel(), (rows + x).ravel(), y.ravel()).reshape(at.shape)
 
 
 def on_target(own: Number, targets: Number) -> tuple[Number, Number]:
@@ -654,14 +647,23 @@ def _made(piece: _Piece) -> tuple[Number, Number]:
 def resampled(curves: Number, samples: int, closed: bool = True) -> Number:
     """Return curves (curves, places) evenly along their arcs, (curves, samples), of open ones both ends."""
     z = np.concatenate([curves, curves[:, :1]], axis=1) if closed else curves
-    along = np.zeros(z.shape)
-    np.cumsum(np.abs(np.diff(z, axis=1)), axis=1, out=along[:, 1:])
-    total = along[:, -1:]
-    along /= np.where(total > 0.0, total, 1.0)
-    # one interpolation for all rows: each has an interval of its own
-    rows = 2.0 * np.arange(len(z))[:, None]
     wanted = np.linspace(0.0, 1.0, samples, endpoint=not closed)
-    return np.interp((rows + wanted).ravel(), (rows + along).ravel(), z.ravel()).reshape(len(z), samples)
+    return interpolated_rows(np.broadcast_to(wanted, (len(z), samples)), arc_parts(z), z)
+
+
+def arc_parts(curves: Number) -> Number:
+    """Return which part of the arc lies before each place of open curves, (curves, places): 0 at first, 1 at last."""
+    along = np.zeros(curves.shape)
+    np.cumsum(np.abs(np.diff(curves, axis=1)), axis=1, out=along[:, 1:])
+    total = along[:, -1:]
+    return along / np.where(total > 0.0, total, 1.0)
+
+
+def interpolated_rows(at: Number, x: Number, y: Number, long: float = 1.0) -> Number:
+    """Return rows of y over x at places from 0 to `long`, in one interpolation: each row has an interval of its own."""
+    rows = 2.0 * long * np.arange(len(x))[:, None]
+    y = np.broadcast_to(y, x.shape)
+    return np.interp((rows + at).ravel(), (rows + x).ravel(), y.ravel()).reshape(at.shape)
 
 
 def coefficients(curves: Number) -> tuple[Number, Number]:

@@ -45,10 +45,10 @@ ROUNDS, NEAR, EASED = 9, 2e-4, 1.25
 GROWN, OF_A_CHAIN, DRAWN, TAKEN, MOST_TAKEN = 5, 3, 256, 3, 10
 # How many designs of a number of links are kept from a round; which are the same.
 KEPT, SAME = 24, 1e-6
-# Designs of a chain whose sums of squares are less than this apart came to the same place.
+# Designs of a chain whose sums of squares differ by less than this factor came to the same place.
 APART = 1.03
 # By how much the sum of squares of a design counts as more each time that it was moved, or grew.
-TIRED = 1.15
+REPEATED = 1.15
 # The weight of the ends of an open curve; the least part of the turn that traces it.
 ENDS, LEAST_TURN = 2.0, 0.3
 # The greatest sum of a linkage's lengths, in the target's RMS radius: steps lead to larger and larger ones where a
@@ -74,6 +74,9 @@ NO_LENGTH = 1e-12
 GRAIN = 2.0**-20
 # The lesser part by which the first harmonic of one sense must surpass that of the other to be taken.
 GREATER = 1e-6
+
+# How often each design, by its chain and its unknowns, was moved or grew.
+Tried = Counter[tuple[CurveChain, bytes]]
 
 
 class FittedCurve(NamedTuple):
@@ -285,7 +288,7 @@ def _rounds(links: int) -> int:
 def _fitted(matches: Sequence[AtlasMatch], target: CurveTarget, links: int, rounds: int) -> list[FittedCurve]:
     found = _best(_refined(_begun(matches, target)))
     rng = np.random.default_rng(0)
-    moved, grown = Counter[tuple[CurveChain, bytes]](), Counter[tuple[CurveChain, bytes]]()
+    moved, grown = Tried(), Tried()
     for k in range(rounds):
         if not found or min(part.cost.min() for part in found) < NEAR * EASED**k:
             break
@@ -349,14 +352,12 @@ def _by_chain(parts: Iterable[_RefinedDesigns]) -> list[_RefinedDesigns]:
     return [_joined(each) for each in same.values()]
 
 
-def _nearest(
-    parts: Sequence[_RefinedDesigns], count: int, tried: Counter[tuple[CurveChain, bytes]]
-) -> Iterator[_RefinedDesigns]:
+def _nearest(parts: Sequence[_RefinedDesigns], count: int, tried: Tried) -> Iterator[_RefinedDesigns]:
     """Yield the best designs of all, one by one, not many of a chain, and none that came to where a better one is.
 
     Those that have been `tried` stand back for others that are not much worse.
     """
-    order = [(part.cost[k] * TIRED ** tried[part.chain, part.x[k].tobytes()], n, k)
+    order = [(part.cost[k] * REPEATED ** tried[part.chain, part.x[k].tobytes()], n, k)
              for n, part in enumerate(parts) for k in range(len(part.x))]  # fmt: skip
     taken = dict[int, list[float]]()
     for _, n, k in sorted(order):
@@ -371,9 +372,7 @@ def _nearest(
                 return
 
 
-def _moved(
-    found: Sequence[_RefinedDesigns], tried: Counter[tuple[CurveChain, bytes]], rng: np.random.Generator
-) -> list[_RefinedDesigns]:
+def _moved(found: Sequence[_RefinedDesigns], tried: Tried, rng: np.random.Generator) -> list[_RefinedDesigns]:
     """Return the best designs, each moved to several places about."""
     moved = list[_RefinedDesigns]()
     for one in _nearest(found, MOVED, tried):
@@ -385,7 +384,7 @@ def _moved(
 
 
 def _grown(
-    found: Sequence[_RefinedDesigns], links: int, tried: Counter[tuple[CurveChain, bytes]], rng: np.random.Generator
+    found: Sequence[_RefinedDesigns], links: int, tried: Tried, rng: np.random.Generator
 ) -> list[_RefinedDesigns]:
     """Return the best designs with a dyad more: of many dyads those that promise most by their first step."""
     grown = list[_RefinedDesigns]()

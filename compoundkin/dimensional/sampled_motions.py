@@ -17,7 +17,7 @@ import numpy as np
 
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.dimensional.candidates import POINT, Candidates, Linkage
-from compoundkin.dimensional.coupler_atlas import PARTS, coupler_atlas, resampled
+from compoundkin.dimensional.coupler_atlas import PARTS, arc_parts, coupler_atlas, interpolated_rows
 from compoundkin.dimensional.curve_chains import CRANK, CurveChain, Laying, turn
 from compoundkin.dimensional.curve_conditions import keeps_transmission
 from compoundkin.dimensional.design_refinement import (
@@ -127,14 +127,10 @@ def _courses(links: int, count: int) -> tuple[_ChainCourses, ...]:
 
 def resampled_both(z: Number, u: Number) -> tuple[Number, Number]:
     """Return closed courses, (courses, poses), evenly along the arcs of their places, (courses, SAMPLES)."""
-    whole = np.concatenate([z, z[:, :1]], axis=1)
-    along = np.zeros(whole.shape)
-    np.cumsum(np.abs(np.diff(whole, axis=1)), axis=1, out=along[:, 1:])
-    along /= np.where(along[:, -1:] > 0.0, along[:, -1:], 1.0)
-    rows = 2.0 * np.arange(len(z))[:, None]
-    at = (rows + np.linspace(0.0, 1.0, SAMPLES, endpoint=False)).ravel()
-    vectors = np.interp(at, (rows + along).ravel(), np.concatenate([u, u[:, :1]], axis=1).ravel())
-    return resampled(z, SAMPLES), (vectors / np.maximum(np.abs(vectors), 1e-9)).reshape(z.shape)
+    z, u = (np.concatenate([one, one[:, :1]], axis=1) for one in (z, u))
+    along, wanted = arc_parts(z), np.linspace(0.0, 1.0, SAMPLES, endpoint=False)
+    places, vectors = (interpolated_rows(np.broadcast_to(wanted, (len(z), SAMPLES)), along, one) for one in (z, u))
+    return places, vectors / np.maximum(np.abs(vectors), 1e-9)
 
 
 def nearest_courses(z: Number, u: Number, course: WantedMotion) -> tuple[Number, Number]:
@@ -355,12 +351,10 @@ def _begun(part: _ChainCourses, course: WantedMotion) -> Iterator[_FittedMotions
 def _unknowns(design: Number, how: Number, chain: CurveChain, course: WantedMotion) -> Number:
     """Return the unknowns that lay a design on a course, by its best begin, length and sense along the arc."""
     start, long, sense = how.tolist()
-    z, u, _ = _poses(chain, np.repeat(design[None], 2, axis=0), np.append(turn(4 * SAMPLES), TURN))
-    along = np.append(0.0, np.cumsum(np.abs(np.diff(z[0]))))
     angles = np.append(turn(4 * SAMPLES), TURN)
-    ends = np.interp(np.array([start, start + long - 1]) / SAMPLES % 1.0, along / along[-1], angles)
-    window = (0.0, TURN) if course.closed else (float(ends[0]), float((ends[1] - ends[0]) % TURN))
-    at = np.interp((start + np.arange(long) / max(long - 1, 1) * (long - 1)) / SAMPLES % 1.0, along / along[-1], angles)
+    z, u, _ = _poses(chain, np.repeat(design[None], 2, axis=0), angles)
+    at = np.interp((start + np.arange(long)) / SAMPLES % 1.0, arc_parts(z[:1])[0], angles)
+    window = (0.0, TURN) if course.closed else (float(at[0]), float((at[-1] - at[0]) % TURN))
     z, u, _ = _poses(chain, np.repeat(design[None], 2, axis=0), at)
     wanted = [np.interp(np.linspace(0, SAMPLES - 1, long), np.arange(SAMPLES), one)[::sense] for one in course[:2]]
     own, target = z[0] - z[0].mean(), wanted[0] - wanted[0].mean()
