@@ -20,7 +20,7 @@ TURN = np.deg2rad(np.arange(0.0, 360.0, 5.0))
 
 @pytest.fixture(autouse=True)
 def _small_atlas(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    few = tuple(function_chains()[k] for k in (0, 1, 3, 4, 6, 8))
+    few = tuple(function_chains()[k] for k in (0, 1, 3, 4, 8))
     monkeypatch.setattr(sampled_functions, "function_chains", lambda links: few[: 2 if links == 4 else None])
     sampled_functions.chain_outputs.cache_clear()
     monkeypatch.setattr(sampled_functions, "DESIGNS", 6_000)
@@ -51,7 +51,7 @@ def missed(answer: ck.results.Answer, inputs: np.ndarray, outputs: np.ndarray) -
     return float(np.ptp(own - outputs)) / 2.0
 
 
-@pytest.mark.parametrize(("number", "part"), [(0, "whole"), (1, "part"), (3, "gap"), (6, "whole")])
+@pytest.mark.parametrize(("number", "part"), [(0, "whole"), (1, "part"), (3, "gap")])
 def test_the_output_of_a_random_linkage_is_found_again(number: int, part: str) -> None:
     chain = function_chains()[number]
     outputs = planted(chain, number) * (40.0 if not chain.is_angle else 1.0)

@@ -9,6 +9,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.dimensional import curve_fitting
+from compoundkin.dimensional.coupler_atlas import coupler_atlas
 from compoundkin.files.mechanism_files import loads
 from compoundkin.studio import answer, drawn_curves
 
@@ -47,7 +48,8 @@ def off(text: str, curve: np.ndarray, closed: bool) -> float:
 
 
 @pytest.mark.parametrize("closed", [True, False])
-def test_suggestions_go_along_the_curve_each_step_nearer(closed: bool) -> None:
+def test_suggestions_go_along_the_curve_each_step_nearer(closed: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(drawn_curves, "_atlas", lambda: coupler_atlas(4, 4_000))
     curve = EGG if closed else EGG[:50]
     assert answer("", {"ask": "atlas"})["designs"] == 4_000
     best = []

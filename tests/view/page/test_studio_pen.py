@@ -18,26 +18,25 @@ from tests.view.page.test_studio import Window, served_studio, window
 
 __all__ = ["window"]
 
-# What answers in this process, with a small atlas: the processes of a server are tested by its own tests.
-QUICK = {"DESIGNS": 3_000, "GIVEN": 4}
-
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[Any]:
+    """One that answers in this process, with a small atlas: the processes of a server are tested by its own tests."""
     patch = pytest.MonkeyPatch()
+    from compoundkin.dimensional.coupler_atlas import coupler_atlas
     from compoundkin.studio import answer, drawn_curves
 
     class Here(servers.AnsweringProcess):
         def ask(self, document: str, question: Any, seconds: float = 0.0) -> dict[str, Any]:
-            # the search that takes seconds finds what the one before it does
-            asked = {**question, "ask": "fitted"} if question["ask"] == "traced" else question
+            # the search that takes seconds finds what is found at once
+            asked = {**question, "ask": "near"} if question["ask"] == "traced" else question
             return {**answer(document, asked), "ask": question["ask"]}
 
         def start(self) -> Any:
             return None
 
-    for name, value in QUICK.items():
-        patch.setattr(drawn_curves, name, value)
+    patch.setattr(drawn_curves, "GIVEN", 4)
+    patch.setattr(drawn_curves, "_atlas", lambda: coupler_atlas(4, 3_000))
     patch.setattr(servers, "AnsweringProcess", Here)
     with served_studio() as served:
         yield served
