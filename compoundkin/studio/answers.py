@@ -35,7 +35,7 @@ from compoundkin.model.pairs.cylinder import Stroke
 from compoundkin.model.pairs.symbols import Groove, Outline, Wheel
 from compoundkin.structure import Fault, Structure
 from compoundkin.studio.drawn_curves import OF_CURVES
-from compoundkin.studio.edited_document import Placement, written_place
+from compoundkin.studio.edited_document import Document, Placement, written_place
 from compoundkin.studio.edits import edited
 from compoundkin.studio.findings import (
     DIGITS,
@@ -408,6 +408,7 @@ def _edit(document: str, question: Mapping[str, Any]) -> Reply:
 
 
 def _edited(document: str, question: Mapping[str, Any]) -> Reply:
+    """Return the text of the changed document, with what was made. Raises InvalidInput, UnknownName."""
     edit, pose = question.get("edit"), question.get("pose")
     if not isinstance(edit, dict):
         raise InvalidInput(Problem("edit", "there is no edit", 'give {"do": ...} with what it needs'))
@@ -424,22 +425,29 @@ def _edited(document: str, question: Mapping[str, Any]) -> Reply:
         for letter in wanted["drawn"]:
             if letter in drawing.places:
                 wanted["drawn"][letter] = written_place(drawing.places[letter], digits)
-    if edit.get("do") == "configuration":
-        # the drawing chooses it from now on
-        wanted["drawn"] = chosen_configuration(_shown(reading), str(edit.get("name")), pose)
-        wanted.pop("modes", None)
-        made: Reply = {}
-    elif edit.get("do") == "branch":
-        wanted["drawn"], there = chosen_branch(_shown(reading), edit.get("number"), pose)
-        wanted.pop("modes", None)
-        made = {"pose": there}
-    elif edit.get("do") == "dimensions":
-        made = {}
-        changed_dimensions(_shown(reading), wanted, _numbers(edit.get("values")), pose)
-    else:
+    made = _solved_edit(reading, wanted, edit, pose)
+    if made is None:
         made = edited(wanted, edit, drawing)
     text = toml_text.changed(document, wanted, syntax_of(document), read=document_of)
     return {"text": text, "made": made, "problems": []}
+
+
+def _solved_edit(reading: Reading, wanted: Document, edit: Mapping[str, Any], pose: object) -> Reply | None:
+    """Change a document by an edit that needs a solution, and return what was made; None for any other edit."""
+    match edit.get("do"):
+        case "configuration":
+            wanted["drawn"], made = chosen_configuration(_shown(reading), str(edit.get("name")), pose), {}
+        case "branch":
+            wanted["drawn"], there = chosen_branch(_shown(reading), edit.get("number"), pose)
+            made = {"pose": there}
+        case "dimensions":
+            changed_dimensions(_shown(reading), wanted, _numbers(edit.get("values")), pose)
+            return {}
+        case _:
+            return None
+    # the drawing chooses the configuration from now on
+    wanted.pop("modes", None)
+    return made
 
 
 def _numbers(values: Any) -> dict[str, float]:

@@ -108,12 +108,12 @@ def _counts(mechanism: Mechanism) -> Iterator[Reply]:
             links = table.get("first"), table.get("second")
             for k, count in enumerate(teeth if isinstance(teeth, list) else ()):
                 told = f"teeth of {links[k]}"
-                yield {"pair": name, "way": ["teeth", k], "told": told, "value": count, "is_whole": True}
+                yield {"pair": name, "entry": ["teeth", k], "told": told, "value": count, "is_whole": True}
             for key, told in PROFILES.items():
                 if isinstance(profile, dict) and isinstance(profile.get(key), int | float):
                     yield {
                         "pair": name,
-                        "way": ["profile", key],
+                        "entry": ["profile", key],
                         "told": told,
                         "value": profile[key],
                         "is_whole": False,

@@ -181,16 +181,19 @@ def _made_profile(
 
 def stated_number(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     """Give a number of a gear or a cam another value, where it is written: teeth, the radius of a profile."""
-    name, way, value = word_in(edit, "pair"), edit.get("way"), positive_in(edit, "value")
-    if not (isinstance(way, list) and len(way) == 2 and value):
-        raise refused("it is no number above 0", "give pair, way and value")
+    name, entry, value = word_in(edit, "pair"), edit.get("entry"), positive_in(edit, "value")
+    is_entry = (
+        isinstance(entry, list) and len(entry) == 2 and isinstance(entry[0], str) and type(entry[1]) in (int, str)
+    )
+    if not (is_entry and value):
+        raise refused("it is no number above 0", "give pair, entry and value")
     for array, _, table in sheet.tables():
-        holder = table.get(way[0]) if array in ("gears", "cams") and called(table, array) == name else None
-        is_there = way[1] in (0, 1) if isinstance(holder, list) else isinstance(holder, dict) and way[1] in holder
+        holder = table.get(entry[0]) if array in ("gears", "cams") and called(table, array) == name else None
+        is_there = entry[1] in (0, 1) if isinstance(holder, list) else isinstance(holder, dict) and entry[1] in holder
         if holder is None or not is_there:
             continue
         if isinstance(holder, list) and value % 1:
             raise refused(f"{value:g} teeth cannot be", "give a whole number")
-        holder[way[1]] = int(value) if isinstance(holder, list) else sheet.number(value)
+        holder[entry[1]] = int(value) if isinstance(holder, list) else sheet.number(value)
         return {"pair": name}
     raise UnknownName(Problem(name, "there is no such number in the text"))

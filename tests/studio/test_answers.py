@@ -301,7 +301,7 @@ def some_edit(dice: random.Random, reply: dict[str, Any]) -> dict[str, Any]:
         "points": {dice.choice(points): [7, 8]},
         "locks": [{"what": dice.choice(["length", "point"]), "points": points[:2]}],
         "edits": [{"do": "ground", "point": dice.choice(points)}],
-        "radii": [20, 5], "way": dice.choice([["teeth", 0], ["profile", "base"], [1]]), "value": 7,
+        "radii": [20, 5], "entry": dice.choice([["teeth", 0], ["profile", "base"], [1]]), "value": 7,
     }  # fmt: skip
 
 

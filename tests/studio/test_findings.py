@@ -232,17 +232,21 @@ def test_teeth_and_radii_of_profiles_are_changed_in_the_text() -> None:
     text = edited(START, *bars, *grounds, gears, {"do": "driver", "point": "A"})
     (_, count) = reply(text, "dimensions")["counts"]
     assert (count["told"], count["value"], count["is_whole"]) == ("teeth of bar2", 40, True)
-    edit = {"do": "count", "pair": count["pair"], "way": count["way"]}
+    edit = {"do": "count", "pair": count["pair"], "entry": count["entry"]}
     motion = ck.solve(loads(edited(text, {**edit, "value": 50})), {"bar1": [0.0, 0.5]}, order=0)
     assert np.diff(np.ravel(motion.links["bar2"].angle)) == pytest.approx([-0.5 * 20 / 50])
     assert "teeth cannot be" in answer(text, {"ask": "edit", "edit": {**edit, "value": 3.5}})["problems"][0]["what"]
-    assert (
-        "no such number"
-        in answer(text, {"ask": "edit", "edit": {**edit, "pair": "x", "value": 3}})["problems"][0]["what"]
-    )
+    for wrong in ({"pair": "x"}, {"entry": ["teeth", 2]}, {"entry": ["first", 0]}):
+        assert (
+            "no such number"
+            in answer(text, {"ask": "edit", "edit": {**edit, "value": 3, **wrong}})["problems"][0]["what"]
+        )
+    for entry in (["teeth", 1.0], ["teeth", [1]], [["teeth"], 1], ["teeth"], "teeth"):
+        reason = answer(text, {"ask": "edit", "edit": {**edit, "value": 3, "entry": entry}})["problems"][0]["what"]
+        assert reason == "it is no number above 0"
     cam = shipped_text("disc-cam-offset-roller")
     (radius,) = reply(cam, "dimensions")["counts"]
-    changed = edited(cam, {"do": "count", "pair": radius["pair"], "way": radius["way"], "value": 40})
+    changed = edited(cam, {"do": "count", "pair": radius["pair"], "entry": radius["entry"], "value": 40})
     before, after = (ck.solve(loads(one), order=0).points["P"].position for one in (cam, changed))
     # the roller's middle goes as a rod of 38 and 48 would lead it
     crank = 12 * np.exp(1j * np.deg2rad(np.arange(0, 361, 5)))

@@ -13,8 +13,8 @@ const asked = (holder, name, make) => {
 
 // A number that the browser's program does not have: teeth, a radius of a profile. It is changed in the text.
 class Count {
-  constructor({ pair, way, told, value, is_whole: isWhole }, unit) {
-    Object.assign(this, { owner: pair, way, label: told, spoken: told, value, isWhole, unit: isWhole ? "" : unit, step: isWhole ? 1 : value / 20 });
+  constructor({ pair, entry, told, value, is_whole: isWhole }, unit) {
+    Object.assign(this, { owner: pair, entry, label: told, spoken: told, value, isWhole, unit: isWhole ? "" : unit, step: isWhole ? 1 : value / 20 });
   }
 
   get() { return this.value; }
@@ -25,7 +25,7 @@ class Count {
     return this.isWhole && value % 1 ? "It must be a whole number." : "";
   }
 
-  edit(value) { return { do: "count", pair: this.owner, way: this.way, value }; }
+  edit(value) { return { do: "count", pair: this.owner, entry: this.entry, value }; }
 }
 
 export class Dimensions {
