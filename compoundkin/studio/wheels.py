@@ -182,11 +182,10 @@ def _made_profile(
 def stated_number(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     """Give a number of a gear or a cam another value, where it is written: teeth, the radius of a profile."""
     name, entry, value = word_in(edit, "pair"), edit.get("entry"), positive_in(edit, "value")
-    is_entry = (
-        isinstance(entry, list) and len(entry) == 2 and isinstance(entry[0], str) and type(entry[1]) in (int, str)
-    )
-    if not (is_entry and value):
+    if not value:
         raise refused("it is no number above 0", "give pair, entry and value")
+    if not (isinstance(entry, list) and [type(one) for one in entry] in ([str, int], [str, str])):
+        raise refused(f"{entry!r} is no entry of a table", 'give such as ["teeth", 0] or ["profile", "base"]')
     for array, _, table in sheet.tables():
         holder = table.get(entry[0]) if array in ("gears", "cams") and called(table, array) == name else None
         is_there = entry[1] in (0, 1) if isinstance(holder, list) else isinstance(holder, dict) and entry[1] in holder
