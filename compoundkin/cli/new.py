@@ -99,6 +99,13 @@ poses = [[2.9, 0.1, -35], [2.5, 0.4, 12], [1.9, 0.5, 40]]      # x, y, degrees; 
 #   points = [[0, 0], [20, -2], [40, -2], [60, 0], [55, 12], [40, 20], [20, 20], [5, 12]]
 #   closed = true
 #   links = 6
+#   at = [0, 30, 60, 90, 150, 210, 270, 330]    # the driver's angle at each, degrees; or times = [...]; or any
+#
+# Or an output follows a function, of which there are eight pairs or more (so does a body along eight poses or more):
+#
+#   task = "function"
+#   pairs = [[0, 0], [30, 5], [60, 15], [90, 25], [120, 30], [180, 30], [240, 15], [300, 2]]    # degrees
+#   links = 6
 
 [conditions]                    # may be left out
 transmission = 10               # degrees, at least

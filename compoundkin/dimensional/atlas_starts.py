@@ -52,14 +52,12 @@ def _of_chain(
     if not _has_point(graph):
         for node in own.nodes:
             own.nodes[node]["has_point"] = False
-    matcher = nx.isomorphism.GraphMatcher(
-        own, graph, lambda a, b: a == b, lambda a, b: a["is_slide"] == b["is_slide"]
-    )  # fmt: skip
-    ways = list(matcher.isomorphisms_iter())
-    if not ways:
+    is_same = (lambda a, b: a == b), (lambda a, b: a["is_slide"] == b["is_slide"])
+    found = list(nx.isomorphism.GraphMatcher(own, graph, *is_same).isomorphisms_iter())
+    if not found:
         return
-    designs = read()[: max(1, GIVEN // (2 * len(ways)))].astype(float)
-    for links in ways:
+    designs = read()[: max(1, GIVEN // (2 * len(found)))].astype(float)
+    for links in found:
         letters = {
             own.edges[edge]["letter"]: graph.edges[links[edge[0]], links[edge[1]]]["letter"] for edge in own.edges
         }

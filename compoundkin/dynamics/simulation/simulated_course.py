@@ -17,11 +17,7 @@ from compoundkin.dynamics.simulation.driver_state import KnownState
 from compoundkin.dynamics.simulation.friction_chart import FrictionChart
 from compoundkin.dynamics.simulation.friction_table import FrictionTable
 from compoundkin.dynamics.simulation.load_breaks import LoadBreak
-from compoundkin.dynamics.simulation.simulation_events import (
-    BreakWatch,
-    SimulationEvent,
-    Watch,
-)
+from compoundkin.dynamics.simulation.simulation_events import BreakWatch, SimulationEvent, Watch
 from compoundkin.dynamics.simulation.stop_contacts import StopContact, holding
 from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
 from compoundkin.model.loads.latch import Latch

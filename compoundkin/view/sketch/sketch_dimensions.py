@@ -58,12 +58,10 @@ FEW = 5
 def room_for_dimensions(painter: Painter) -> float:
     """Return how many times larger a sketch is drawn so that its dimensions have room."""
     found = one_of_equals([*guide_dimensions(painter), *link_dimensions(painter)])
-    short = sum(one.is_short for one in found) / max(1, len(found))
-    return (
-        float(np.clip(max(np.sqrt(len(found) / CROWD), 1.0 + PER_SHORT * short), 1.0, LARGER))
-        if len(found) >= FEW
-        else 1.0
-    )
+    if len(found) < FEW:
+        return 1.0
+    short = sum(one.is_short for one in found) / len(found)
+    return float(np.clip(max(np.sqrt(len(found) / CROWD), 1.0 + PER_SHORT * short), 1.0, LARGER))
 
 
 def link_dimensions(painter: Painter) -> list[Dimension]:
