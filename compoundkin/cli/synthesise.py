@@ -97,7 +97,7 @@ def trace_command(
 
     from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.dimensional.synthesis import synthesise
-    from compoundkin.dimensional.tasks import curve
+    from compoundkin.dimensional.tasks import FEWEST_OF_CURVE, curve
     from compoundkin.files.curve_files import read_curve, read_timed_curve
 
     _check_places(picture, folder)
@@ -108,7 +108,7 @@ def trace_command(
         places, values = read_timed_curve(file, column)
         task = curve(places, **({"times": values} if times else {"at": np.deg2rad(values)}), **options)
     else:
-        task = curve(read_curve(file), **options)
+        task = curve(read_curve(file, FEWEST_OF_CURVE), **options)
     walls = [read_curve(wall) for wall in obstacles] or None
     with working("tracing"):
         answer = synthesise(task, transmission=float(np.deg2rad(transmission)), obstacles=walls)

@@ -385,7 +385,8 @@ def _with_timing(part: AtlasPart, sought: SoughtCurve) -> Iterator[_Ranked]:
     if sought.closed:
         lengths: Sequence[int] = (STARTS,)
     elif timing.turn:
-        lengths = (max(2, round(abs(timing.turn) / TURN * STARTS) + 1),)
+        # a part that is all of the turn ends a step before it begins again
+        lengths = (min(max(2, round(abs(timing.turn) / TURN * STARTS) + 1), STARTS),)
     else:
         lengths = PARTS
     variants = [(long, sense, mirrored) for long in lengths for sense in (1, -1) for mirrored in (False, True)

@@ -48,7 +48,7 @@ from compoundkin.dimensional.design_refinement import (
     ranked,
     refined,
 )
-from compoundkin.dimensional.tasks import FunctionTask
+from compoundkin.dimensional.tasks import NEXT, FunctionTask
 from compoundkin.model.attributes import ANGLE, VALUE
 from compoundkin.model.elements import Item, drive, link, mode
 from compoundkin.model.geometry import FRAME
@@ -69,6 +69,8 @@ LEAST_SWING, LEAST_TRAVEL = 0.05, 0.15
 WIDER = 0.5
 # Poses of a turn at which designs are followed when they are refined.
 FINE = 96
+# Of more pairs so many are compared.
+MOST_PAIRS = 400
 # Between inputs farther apart than this part of a turn nothing is wanted.
 GAP = 1.0 / 12.0
 # Designs of a chain that are refined, the best of all that are refined to the end, steps of both, and rounds in which
@@ -266,13 +268,17 @@ class WantedFunction(NamedTuple):
     def of(cls, task: FunctionTask) -> WantedFunction:
         """Return the function of a task."""
         pairs = np.stack([task.inputs, task.outputs], axis=-1) if task.whole is None else task.whole
-        inputs, outputs = pairs[np.argsort(pairs[:, 0], kind="stable")].T
+        pairs = pairs[np.argsort(pairs[:, 0], kind="stable")]
+        inputs, outputs = pairs[np.unique(np.linspace(0, len(pairs) - 1, MOST_PAIRS).astype(int))].T
         around = np.append(inputs, inputs[0] + TURN)
         grid = inputs[0] + turn(GRID)
         after = np.clip(np.searchsorted(around, grid, side="right"), 1, len(inputs))
-        wanted = (np.diff(around)[after - 1] <= GAP * TURN) | np.isclose(grid, around[after - 1])
+        # what is sampled sparsely and evenly has no gaps
+        steps = np.diff(around)
+        gap = max(GAP * TURN, NEXT * float(np.median(steps)))
+        wanted = (steps[after - 1] <= gap) | np.isclose(grid, around[after - 1])
         values = np.interp(grid, around, np.append(outputs, outputs[0]))
-        is_whole = bool(np.diff(around).max() <= GAP * TURN)
+        is_whole = bool(steps.max() <= gap)
         return cls(inputs, outputs, is_whole, values, wanted.astype(float), task.conditions.transmission)
 
 

@@ -20,9 +20,13 @@ from compoundkin.model.validation import PRINTABLE, is_name
 
 # Precision positions nearer to each other than this part of their extent are one.
 SAME = 1e-9
+# An output that changes by less than this part of itself is constant.
+ROUNDING = 1e-12
 # A drawn curve has so many points at least; its ends meet within this part of its extent, or this part of its longest
 # step: whoever samples a turn leaves the first point out at its end.
 FEWEST_OF_CURVE, MEETING, NEXT = 8, 0.05, 1.2
+# Of more places than so many the extent is that of the farthest in as many directions.
+MANY = 256
 # A function's error is seen at so many places of its range.
 WHOLE = 181
 # Preferences among answers, by what they are ranked.
@@ -502,6 +506,9 @@ def _timing(at: Any, times: Any, points: Number, closed: bool) -> CurveTiming:
     if at is not None:
         if abs(long) > TURN * (1.0 + SAME):
             raise InvalidInput(Problem(where, f"{np.rad2deg(abs(long)):.6g} degrees are more than a turn", "radians"))
+        if not closed and abs(long) > TURN * (1.0 - SAME):
+            what = "an open curve takes less than a turn: after one its point is where it began"
+            raise InvalidInput(Problem(where, what, "leave out closed, or give less"))
         whole = float(np.copysign(TURN, long)) if closed else long
     parts = (values - values[0]) / whole
     return CurveTiming(parts[:-1] if again else parts, whole if at is not None else TURN * closed, at is None)
@@ -599,8 +606,11 @@ def _samples(pairs: Number, links: int, linkage: str, absolute: bool) -> Number:
         raise InvalidInput(Problem("pairs", what, f"give {FEWEST_OF_CURVE} or more, or leave links out"))
     ordered = pairs[np.argsort(pairs[:, 0], kind="stable")]
     around, stroke = ordered[-1, 0] - ordered[0, 0], float(np.ptp(ordered[:, 1]))
-    if stroke == 0.0:
+    if stroke <= ROUNDING * float(np.abs(ordered[:, 1]).max()):
         raise InvalidInput(Problem("pairs", "the output does not move", "a function has different outputs"))
+    if linkage != "slider-crank" and stroke > TURN:
+        what = f"the output swings by {np.rad2deg(stroke):.6g} degrees, more than a turn"
+        raise InvalidInput(Problem("pairs", what, 'give radians; displacements are of linkage="slider-crank"'))
     if around > 2.0 * np.pi * (1.0 + SAME):
         raise InvalidInput(Problem("pairs", "they go beyond a turn", "give inputs within one turn"))
     if around > 2.0 * np.pi * (1.0 - SAME):
@@ -629,7 +639,7 @@ def _tabulated(law: Any, between: Any, inputs: Any, outputs: Any, count: int) ->
             y = real_numbers("pairs", law(np.array([low, *x, high])))
         except (TypeError, ValueError, ArithmeticError) as problem:
             raise InvalidInput(Problem("pairs", f"the function fails: {problem}")) from None
-        if y.shape != (len(x) + 2,) or not np.isfinite(y).all() or y[0] == y[-1]:
+        if y.shape != (len(x) + 2,) or not np.isfinite(y).all() or abs(y[-1] - y[0]) <= SAME * np.ptp(y):
             what = "the function gives no finite value at each place, or the same at both ends"
             raise InvalidInput(Problem("pairs", what, "it takes an array, and its ends differ"))
         phi = np.interp((x - low) / (high - low), (0, 1), ranges["inputs"])
@@ -751,6 +761,10 @@ def extent(place: Number) -> float:
     >>> extent(np.array([0, 3, 4j]))
     5.0
     """
+    if len(place) > MANY:  # the farthest of so many directions: between any two the extent is less by 2e-5 at most
+        ahead = np.exp(1j * np.pi * np.arange(MANY) / MANY)
+        farthest = [each((place * np.conj(one)).real) for one in ahead for each in (np.argmin, np.argmax)]
+        place = place[np.unique(farthest)]
     return float(np.max(np.abs(np.subtract.outer(place, place)), initial=0.0)) or 1.0
 
 
@@ -772,12 +786,15 @@ def _twists(where: str, given: Any, count: int) -> dict[int, tuple[complex, floa
 
 
 def _different(where: str, noun: str, rows: Number) -> None:
-    """Raise InvalidInput for two rows that are equal."""
-    apart = np.max(np.abs(rows[:, None] - rows[None]), axis=-1) + np.eye(len(rows))
-    if np.min(apart) < SAME:
-        i, j = (int(k) for k in np.argwhere(apart < SAME)[0])
-        what = f"{noun} {i} and {noun} {j} are equal"
-        raise InvalidInput(Problem(where, what, "leave one out; a pose infinitely near is written as a velocity"))
+    """Raise InvalidInput for two rows of complex numbers that are equal."""
+    from scipy.spatial import KDTree
+
+    tree = KDTree(np.hstack([rows.real, rows.imag]))
+    equal = min(tree.query_pairs(SAME, p=np.inf), default=None)
+    if equal is not None:
+        what = f"{noun} {equal[0]} and {noun} {equal[1]} are equal"
+        near = "; a pose infinitely near is written as a velocity" if where == "poses" else ""
+        raise InvalidInput(Problem(where, what, f"leave one out{near}"))
 
 
 def _finite(where: str, numbers: Number) -> None:

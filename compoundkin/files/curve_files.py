@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from itertools import pairwise
 from pathlib import Path
 
@@ -20,6 +20,8 @@ from compoundkin.files.parsed_document import unreadable
 PIECES, MISSED = 24, 1e-3
 _SEPARATORS = (";", "\t", ",", None)
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+# Elements of an SVG that are curves, and those that are where there are no others.
+_PATHS, _SHAPES = ("path", "polyline", "polygon"), ("rect", "circle", "ellipse")
 # How many numbers each letter of an SVG path takes.
 _COUNTS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7, "Z": 0}
 _FLAGS = (3, 4)
@@ -27,12 +29,14 @@ _FLAGS = (3, 4)
 _MIRRORED = {"S": "CS", "T": "QT"}
 
 
-def read_curve(path: str | os.PathLike[str]) -> Number:
+def read_curve(path: str | os.PathLike[str], fewest: int = 0) -> Number:
     """Return the places along the curve of a file, complex (n,), y upward.
 
     A table has a point a line, in columns x and y (others, as of the time, need a heading that names them). Of an
-    SVG the longest path, polyline or polygon is taken, in its own units, with its transforms; of a DXF the longest
-    polyline, spline, arc, circle or ellipse. Raises InvalidInput for a file that cannot be read or has no curve.
+    SVG the longest path, polyline or polygon is taken, else the longest rectangle, circle or ellipse, in its own
+    units, with its transforms; of a DXF the longest polyline, spline, arc, circle or ellipse. Lines of a drawing with
+    at most so many corners as `fewest` are given in pieces. Raises InvalidInput for a file that cannot be read or has
+    no curve.
     """
     form = SUFFIXES["curve"].get(suffix_of(path))
     if form is None:
@@ -47,6 +51,10 @@ def read_curve(path: str | os.PathLike[str]) -> Number:
         raise unreadable(path, "there is no curve in it", "a curve is a path, a polyline, or two columns x and y")
     if not np.isfinite(found).all():
         raise unreadable(path, "a number of the curve is not finite")
+    if form != "csv" and len(found) <= fewest:  # lines of a drawing are as much of it as its corners
+        many = -(-PIECES // (len(found) - 1)) * (len(found) - 1)
+        steps = np.linspace(0.0, len(found) - 1.0, many + 1)
+        found = np.interp(steps, np.arange(len(found)), found)
     return found
 
 
@@ -148,16 +156,24 @@ def _of_svg(content: bytes, where: str) -> list[Number]:
         root = ElementTree.fromstring(content)
     except ElementTree.ParseError as error:
         raise unreadable(where, f"it is no SVG: {error}") from None
-    return [np.conj(curve) for curve in _below(root, np.eye(3), where) if len(curve) > 1]
+    # a rectangle beside paths is the paper, commonly
+    for kinds in (_PATHS, _SHAPES):
+        if drawn := [np.conj(curve) for curve in _below(root, np.eye(3), where, kinds) if len(curve) > 1]:
+            return drawn
+    return []
 
 
-def _below(element: ElementTree.Element, outer: Number, where: str) -> Iterator[Number]:
+def _below(element: ElementTree.Element, outer: Number, where: str, kinds: Container[str]) -> Iterator[Number]:
     """Yield the curves of an element and those in it, y downward as they are there."""
     matrix = outer @ _transform(element.get("transform", ""), where)
     kind = element.tag.rsplit("}", 1)[-1] if isinstance(element.tag, str) else ""
     curves: list[Number] = []
-    if kind == "path":
+    if kind not in kinds:
+        pass
+    elif kind == "path":
         curves = _of_path(element.get("d", ""), where)
+    elif kind in _SHAPES:
+        curves = _of_path(_path_of(kind, element, where), where)
     elif kind in ("polyline", "polygon"):
         numbers = [float(one) for one in re.findall(_NUMBER, element.get("points", ""))]
         places = np.array(numbers[: len(numbers) // 2 * 2]).reshape(-1, 2) @ [1.0, 1.0j]
@@ -166,7 +182,26 @@ def _below(element: ElementTree.Element, outer: Number, where: str) -> Iterator[
         x, y, _ = matrix @ [curve.real, curve.imag, np.ones(len(curve))]
         yield x + 1j * y
     for child in element:
-        yield from _below(child, matrix, where)
+        yield from _below(child, matrix, where, kinds)
+
+
+def _path_of(kind: str, element: ElementTree.Element, where: str) -> str:
+    """Return the path of a rectangle, circle or ellipse. Source: SVG 2, W3C 2018, chapter 10."""
+    names = {"rect": ("x", "y", "width", "height"), "circle": ("cx", "cy", "r", "r")}
+    numbers = []
+    for name in names.get(kind, ("cx", "cy", "rx", "ry")):
+        match = re.fullmatch(rf"({_NUMBER})(px)?", element.get(name, "0").strip())
+        if match is None:
+            what = f"{name} of a {kind} is {element.get(name)}"
+            raise InvalidInput(Problem(where, what, "write it as a number, or the shape as a path"))
+        numbers.append(float(match[1]))
+    x, y, wide, high = numbers
+    if not (wide > 0.0 and high > 0.0):
+        return ""
+    if kind == "rect":
+        return f"M{x},{y} h{wide} v{high} h{-wide} z"
+    arc = f"a{wide},{high} 0 0 1"
+    return f"M{x - wide},{y} {arc} {2.0 * wide},0 {arc} {-2.0 * wide},0"
 
 
 def _transform(text: str, where: str) -> Number:
@@ -302,7 +337,7 @@ def _of_dxf(content: bytes, where: str) -> list[Number]:
     try:
         document = library.read(io.StringIO(content.decode("utf-8", errors="surrogateescape")))
     except (OSError, ValueError, library.DXFError) as error:
-        raise unreadable(where, f"it is no DXF drawing: {error}") from None
+        raise unreadable(where, f"it is no DXF drawing: {' '.join(str(error).split())}") from None
     from ezdxf.path import make_path
 
     found = []

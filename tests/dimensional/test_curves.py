@@ -18,6 +18,7 @@ from compoundkin.dimensional import coupler_atlas as atlases
 from compoundkin.dimensional import curve_fitting, defects
 from compoundkin.dimensional.coupler_atlas import coefficients, coupler_atlas, likeness, mean_distance, resampled
 from compoundkin.dimensional.curve_chains import CurveChain, Laying, curve_chains, turn
+from compoundkin.dimensional.tasks import extent
 from compoundkin.errors import InvalidInput
 from compoundkin.files.curve_files import read_curve
 from compoundkin.synthesis.chains.mechanism_names import structure_name
@@ -595,7 +596,7 @@ def test_a_polyline_of_a_dxf(tmp_path: Path) -> None:
         ("c.svg", "<svg><path d='M0 0 L1'/></svg>", "has 1 numbers"),
         ("c.svg", "<svg><g transform='warp(3)'><path d='M0 0 L1 1'/></g></svg>", "warp"),
         ("c.svg", "<svg><path d='L1 1 2 2'/></svg>", "begins with L"),
-        ("c.svg", "<svg><circle r='3'/></svg>", "there is no curve in it"),
+        ("c.svg", "<svg><circle r='0'/></svg>", "there is no curve in it"),
         ("c.dxf", "no drawing", "it is no DXF drawing"),
     ],
 )
@@ -671,3 +672,40 @@ def test_a_curve_sampled_around_is_closed_a_stroke_is_open() -> None:
     assert ck.tasks.curve(eight).closed
     assert not ck.tasks.curve(eight[:50]).closed
     assert not ck.tasks.curve(np.linspace(0, 1 + 1j, 30)).closed
+
+
+def test_very_many_points_are_a_curve_like_fewer() -> None:
+    """Distances of each from each took 150 GB of memory; the extent is that of some hundred places."""
+    around = np.exp(1j * np.linspace(0.0, 2 * np.pi, 100_001))
+    assert ck.tasks.curve(around).closed
+    assert extent(2 * around) == pytest.approx(4.0, rel=1e-4)
+    slant = np.exp(0.4j) * np.linspace(0.0, 3.0, 1001) + 7
+    assert extent(slant) == pytest.approx(3.0, rel=1e-4)
+    assert not ck.tasks.curve(slant).closed
+
+
+def test_an_open_curve_takes_less_than_a_turn() -> None:
+    with pytest.raises(InvalidInput, match="less than a turn"):
+        ck.tasks.curve(EGG, at=np.linspace(0.0, 2 * np.pi, len(EGG)), closed=False)
+    task = ck.tasks.curve(EGG, at=np.linspace(0.0, 6.28, len(EGG)), closed=False)
+    sought = atlases.SoughtCurve(task.points, task.closed, task.timing)
+    assert len(coupler_atlas(4, 1000).nearest(sought, 2)) == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "long", "area"),
+    [
+        ("<rect x='1' y='2' width='3px' height='4'/>", 14.0, 12.0),
+        ("<g transform='scale(2)'><circle cx='1' r='3'/></g>", 12 * np.pi, 36 * np.pi),
+        ("<ellipse rx='2' ry='2'/>", 4 * np.pi, 4 * np.pi),
+        ("<rect width='90' height='90'/><polygon points='0,0 3,0 3,4'/>", 12.0, 6.0),
+    ],
+)
+def test_shapes_of_an_svg_are_curves(tmp_path: Path, text: str, long: float, area: float) -> None:
+    """A triangle is long enough for a curve; a rectangle beside it is the paper."""
+    path = tmp_path / "drawn.svg"
+    path.write_text(f"<svg xmlns='http://www.w3.org/2000/svg'>{text}</svg>")
+    found = read_curve(path, fewest=8)
+    assert ck.tasks.curve(found).closed
+    assert np.abs(np.diff(found)).sum() == pytest.approx(long, rel=0.01)
+    assert abs(np.sum(np.conj(found) * np.roll(found, -1)).imag) / 2 == pytest.approx(area, rel=0.01)

@@ -124,6 +124,9 @@ def test_slopes_are_differences(chain: FunctionChain) -> None:
         (np.stack([TURN, np.cos(TURN)], -1), {"links": 6, "linkage": "inverted"}, "no swinging guide"),
         (np.stack([TURN, np.cos(TURN)], -1)[:5], {"links": 6}, "no samples of a function"),
         (np.stack([TURN, 0 * TURN], -1), {"links": 6}, "does not move"),
+        (np.stack([TURN, 1 + 1e-16 * TURN], -1), {"links": 6}, "does not move"),
+        (np.stack([TURN, 20 * np.cos(TURN)], -1), {"links": 6}, "swings by 2291.83 degrees.*give radians"),
+        (np.stack([TURN, np.cos(TURN)], -1)[[*range(9), 3]], {"links": 6}, "are equal; leave one out$"),
         (np.stack([2 * TURN, np.cos(TURN)], -1), {"links": 6}, "beyond a turn"),
         (np.stack([np.linspace(0, 2 * np.pi, 30), np.linspace(0, 1, 30)], -1), {"links": 6}, "after a turn"),
     ],
@@ -141,3 +144,30 @@ def test_a_file_has_them_too(tmp_path: Path) -> None:
     result = CliRunner().invoke(cli, ["synthesise", str(task)])
     assert result.exit_code == 0, result.output
     assert "Four-bar" in result.output
+
+
+def test_a_law_that_ends_where_it_began_but_for_rounding_is_said() -> None:
+    """Scaled by the difference of its ends, 2e-16, it was a function of 4e15 radians."""
+    around = (0.0, 2 * np.pi)
+    with pytest.raises(InvalidInput, match="the same at both ends"):
+        ck.tasks.function(np.sin, between=around, inputs=around, outputs=(0, 1), links=6)
+
+
+def test_even_samples_farther_apart_than_gaps_are_a_whole_turn() -> None:
+    """Eleven of a turn are 33 degrees apart; a gap of a function that is sampled so is wider."""
+    around = np.arange(11) * (2 * np.pi / 11)
+    wanted = WantedFunction.of(ck.tasks.function(np.stack([around, np.sin(around)], -1), links=4))
+    assert wanted.is_whole
+    assert wanted.wanted.all()
+    wanted = WantedFunction.of(ck.tasks.function(np.stack([around, np.sin(around)], -1)[:9], links=4))
+    assert not wanted.is_whole
+    assert not wanted.wanted.all()
+
+
+def test_very_many_pairs_are_a_function_like_fewer() -> None:
+    """Comparisons of each with each took 150 GB of memory."""
+    many = np.linspace(0.0, 2 * np.pi, 100_001)
+    wanted = WantedFunction.of(ck.tasks.function(np.stack([many, np.sin(many)], -1), links=4))
+    assert len(wanted.inputs) <= sampled_functions.MOST_PAIRS
+    assert wanted.is_whole
+    np.testing.assert_allclose(wanted.outputs, np.sin(wanted.inputs), atol=1e-12)
