@@ -7,15 +7,18 @@ Math. 2 (1944) 164-168, with the diagonal in place of the unit matrix (D. W. Mar
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import islice
-from typing import NamedTuple, Protocol, Self, TypeAlias, TypeVar
+from typing import NamedTuple, Self, TypeAlias, TypeVar
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.dimensional.candidates import Linkage
+from compoundkin.dimensional.curve_chains import CurveChain
 from compoundkin.dimensional.defects import Rejection, SolvedLinkage, judged
 from compoundkin.dimensional.tasks import Task
 
@@ -23,6 +26,8 @@ from compoundkin.dimensional.tasks import Task
 FIRST, EASIER, HARDER, LEAST, HOPELESS = 1e-2, 0.3, 4.0, 1e-7, 1e5
 # No number goes farther in a step; a step that gains less than is asked for makes the next so much harder.
 FARTHEST, SLOWER = 0.5, 30.0
+# Added to the diagonal of the normal equations, in parts of its greatest entry: sizes, and begins, may be free.
+FLOOR = 1e-9
 # The best are moved to so many places each, so far: from and to.
 MOVED, MOVES, MOVED_BY = 8, 8, (0.02, 0.4)
 # So many answers are given, of one kind of linkage so many, and so many linkages are looked at for them; lengths that
@@ -93,28 +98,38 @@ def refined(
     return x, cost
 
 
-class RefinedDesigns(Protocol):
-    """Designs of one chain that are refined together: unknowns `x` (designs, numbers), sums of squares `cost`."""
+@dataclass(frozen=True, eq=False)
+class FittedDesigns(ABC):
+    """Designs of one chain that are refined together, `mirrored` or not: unknowns `x` (designs, numbers).
 
-    @property
-    def x(self) -> Number:
-        """The unknowns."""
+    After the designs' numbers stand others, such as how they are laid. `cost` are sums of squares, infinite where they
+    are not known.
+    """
 
-    @property
-    def cost(self) -> Number:
-        """The sums of squares."""
+    chain: CurveChain
+    mirrored: bool
+    x: Number
+    cost: Number
+
+    @abstractmethod
+    def residuals(self, x: Number) -> tuple[Number, Number, Number]:
+        """Return residuals (designs, n), their slopes (designs, n, numbers), and which designs are clear."""
 
     def refined(self, steps: int) -> Self:
         """Return them after so many steps."""
+        x, cost = refined(self.x, lambda x, rows: self.residuals(x), steps, FLOOR, of_greatest=True)
+        return replace(self, x=x, cost=cost)
 
     def some(self, kept: Number) -> Self:
         """Return some of them."""
+        return replace(self, x=self.x[kept], cost=self.cost[kept])
 
     def moved(self, x: Number) -> Self:
-        """Return designs like this one at other unknowns, whose costs are not known."""
+        """Return designs at other unknowns."""
+        return replace(self, x=x, cost=np.full(len(x), np.inf))
 
 
-Designs = TypeVar("Designs", bound=RefinedDesigns)
+Designs = TypeVar("Designs", bound=FittedDesigns)
 
 
 class RefinementPlan(NamedTuple):

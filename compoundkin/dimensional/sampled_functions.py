@@ -42,11 +42,11 @@ from compoundkin.dimensional.curve_chains import (
 from compoundkin.dimensional.curve_conditions import keeps_transmission
 from compoundkin.dimensional.design_refinement import (
     GIVEN,
+    FittedDesigns,
     RefinementPlan,
     best_designs,
     different_verdicts,
     ranked,
-    refined,
 )
 from compoundkin.dimensional.tasks import NEXT, FunctionTask
 from compoundkin.model.attributes import ANGLE, VALUE
@@ -78,8 +78,6 @@ GAP = 1.0 / 12.0
 STARTED, BEST, FIRST_STEPS, STEPS, ROUNDS = 16, 24, 15, 60, 2
 # Positions at which a refined linkage is handed on.
 POSITIONS = 12
-# Added to the diagonal of the normal equations, in parts of its greatest entry: sizes may be free.
-FLOOR = 1e-9
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -315,39 +313,24 @@ def nearest_outputs(
 # --- refinement -----------------------------------------------------------------------------------------------
 
 
-class FittedFunctions(NamedTuple):
-    """Designs of one chain that are refined together, `x` (designs, numbers + 2), mirrored or not, and of one sense.
+@dataclass(frozen=True, eq=False)
+class FittedFunctions(FittedDesigns):
+    """Designs of one chain that are refined together to a function, (designs, numbers + 2), of one sense.
 
-    After the designs' numbers stand the crank's angle at the first input and the logarithm of the scale. `cost` are
-    sums of squares.
+    After the designs' numbers stand the crank's angle at the first input and the logarithm of the scale.
     """
 
     chain: FunctionChain
-    mirrored: bool
     sense: float
     wanted: WantedFunction
-    x: Number
-    cost: Number
-
-    def refined(self, steps: int) -> FittedFunctions:
-        """Return them after so many steps."""
-        x, cost = refined(self.x, lambda x, rows: self._residuals(x), steps, FLOOR, of_greatest=True)
-        return self._replace(x=x, cost=cost)
-
-    def some(self, kept: Number) -> FittedFunctions:
-        """Return some of them."""
-        return self._replace(x=self.x[kept], cost=self.cost[kept])
-
-    def moved(self, x: Number) -> FittedFunctions:
-        """Return designs at other unknowns, whose costs are not known."""
-        return self._replace(x=x, cost=np.full(len(x), np.inf))
 
     def angles(self, x: Number, inputs: Number) -> Number:
         """Return the angles of the chain's crank at inputs, (designs, inputs)."""
         around = x[:, [-2]] + (inputs - self.wanted.inputs[0])
         return -around if self.mirrored else around
 
-    def _residuals(self, x: Number) -> tuple[Number, Number, Number]:
+    def residuals(self, x: Number) -> tuple[Number, Number, Number]:
+        """Return what outputs miss at the inputs but for a zero, slopes, and which designs are clear."""
         n, is_angle = len(self.chain.numbers), self.chain.is_angle
         double = np.repeat(x, 2, axis=0) if len(x) == 1 else x  # for one design other programs would be made
         value, by, by_crank, clear = self.chain.value_slopes(double[:, :n], self.angles(double, self.wanted.course))
@@ -370,7 +353,7 @@ class FittedFunctions(NamedTuple):
     def linkage(self, k: int) -> Linkage:
         """Return one of them as a linkage at positions from the first input to the last, or all around."""
         x, inputs = self.x[k], self.wanted.inputs
-        r = self._residuals(x[None])[0][0]
+        r = self.residuals(x[None])[0][0]
         is_angle = self.chain.is_angle
         scale = 1.0 if is_angle else self.sense * float(np.exp(x[-1]))
         positions = (
@@ -416,4 +399,4 @@ def _begun(part: ChainOutputs, wanted: WantedFunction) -> Iterator[FittedFunctio
             designs = part.designs[chosen[own] % count]
             begin = start[own] * (TURN / GRID)
             x = np.hstack([designs, begin[:, None], np.log(np.abs(factor[own]))[:, None]])
-            yield FittedFunctions(part.chain, mirrored, sense, wanted, x, np.full(len(x), np.inf))
+            yield FittedFunctions(part.chain, mirrored, x, np.full(len(x), np.inf), sense, wanted)

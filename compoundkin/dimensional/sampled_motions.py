@@ -9,7 +9,7 @@ value as that of the places has.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from typing import NamedTuple
 
@@ -22,11 +22,11 @@ from compoundkin.dimensional.curve_chains import CRANK, CurveChain, Laying, turn
 from compoundkin.dimensional.curve_conditions import keeps_transmission
 from compoundkin.dimensional.design_refinement import (
     GIVEN,
+    FittedDesigns,
     RefinementPlan,
     best_designs,
     different_verdicts,
     ranked,
-    refined,
 )
 from compoundkin.dimensional.tasks import PoseTask, extent
 from compoundkin.model.attributes import ANGLE, POSITION
@@ -39,8 +39,6 @@ DESIGNS, SAMPLES, POSES = 40_000, 64, 96
 # Designs of a chain that are refined, the best of all that are refined to the end, steps of both, and rounds in which
 # the best are moved.
 STARTED, BEST, FIRST_STEPS, STEPS, ROUNDS = 12, 24, 20, 60, 1
-# Added to the diagonal of the normal equations, in parts of its greatest entry: of a closed course the begin is free.
-FLOOR = 1e-9
 # The least part of the turn that follows an open course, and the least spread of a part of a curve.
 LEAST_TURN, LEAST_SPREAD = 0.3, 0.05
 # The part of residuals along the course, which keeps poses from gliding without end; the weight of an open one's ends.
@@ -165,39 +163,27 @@ def nearest_courses(z: Number, u: Number, course: WantedMotion) -> tuple[Number,
     return best, how
 
 
-class _FittedMotions(NamedTuple):
-    """Designs of one chain that are refined together to a course, `x` (designs, numbers + LAYING), mirrored or not.
+@dataclass(frozen=True, eq=False)
+class _FittedMotions(FittedDesigns):
+    """Designs of one chain that are refined together to a course, (designs, numbers + LAYING).
 
     After the designs' numbers stand the crank's angle at the begin, the turn from there, the logarithm of the size, the
-    angle, the place, and the angle of the body on its link. `cost` are sums of squares.
+    angle, the place, and the angle of the body on its link.
     """
 
-    chain: CurveChain
-    mirrored: bool
     course: WantedMotion
-    x: Number
-    cost: Number
-
-    def refined(self, steps: int) -> _FittedMotions:
-        """Return them after so many steps."""
-        x, cost = refined(self.x, lambda x, rows: self._residuals(x), steps, FLOOR, of_greatest=True)
-        return self._replace(x=x, cost=cost)
-
-    def some(self, kept: Number) -> _FittedMotions:
-        """Return some of them."""
-        return self._replace(x=self.x[kept], cost=self.cost[kept])
 
     def moved(self, x: Number) -> _FittedMotions:
-        """Return designs at other unknowns, whose costs are not known; a whole turn begins where it did."""
+        """Return designs at other unknowns; a whole turn begins where it did."""
         if self.course.closed:
             x[:, -LAYING : 2 - LAYING] = self.x[0, -LAYING : 2 - LAYING]
-        return self._replace(x=x, cost=np.full(len(x), np.inf))
+        return super().moved(x)
 
     def _angles(self, x: Number, poses: int) -> Number:
         parts = np.linspace(0.0, 1.0, poses, endpoint=not self.course.closed)
         return x[:, [-LAYING]] + x[:, [1 - LAYING]] * parts
 
-    def _residuals(self, x: Number) -> tuple[Number, Number, Number]:
+    def residuals(self, x: Number) -> tuple[Number, Number, Number]:
         """Return the gaps of each sample to the nearest pose, and of each pose to the nearest sample, their slopes."""
         n, course, count = len(self.chain.numbers), self.course, len(x)
         double = np.repeat(x, 2, axis=0) if count == 1 else x  # for one design other programs would be made
@@ -345,7 +331,7 @@ def _begun(part: _ChainCourses, course: WantedMotion) -> Iterator[_FittedMotions
             continue
         how = both[int(mirrored)][1][own]
         x = [_unknowns(part.designs[k], one, part.chain, wanted) for k, one in zip(own, how, strict=True)]
-        yield _FittedMotions(part.chain, mirrored, wanted, np.array(x), np.full(len(x), np.inf))
+        yield _FittedMotions(part.chain, mirrored, np.array(x), np.full(len(x), np.inf), wanted)
 
 
 def _unknowns(design: Number, how: Number, chain: CurveChain, course: WantedMotion) -> Number:
