@@ -570,6 +570,16 @@ def function(
     known = ("four-bar", "slider-crank", "inverted")
     if linkage not in known:
         raise InvalidInput(Problem("linkage", f"{linkage!r} generates no function", f"one of {', '.join(known)}"))
+    found, whole = _read_pairs(pairs, between, inputs, outputs, count)
+    if links is not None:
+        found, whole = _samples(found if whole is None else whole, links, linkage, absolute), None
+    _different("pairs", "input", np.exp(1j * found[:, :1]))
+    x, y = found.T
+    return FunctionTask(x, y, linkage, absolute, whole, links or 0, tolerance=_tolerance(tolerance))
+
+
+def _read_pairs(pairs: Any, between: Any, inputs: Any, outputs: Any, count: int) -> tuple[Number, Number | None]:
+    """Return pairs, and those over the whole range of a Python function. Raises InvalidInput for what are none."""
     whole = None
     if callable(pairs):
         pairs, whole = _tabulated(pairs, between, inputs, outputs, count)
@@ -580,18 +590,7 @@ def function(
     if found.ndim != 2 or found.shape[1] != 2 or len(found) < 3:
         raise InvalidInput(Problem("pairs", "they are no three or more pairs", "give (input, output) for each"))
     _finite("pairs", found)
-    if links is not None:
-        found = _samples(found if whole is None else whole, links, linkage, absolute)
-    _different("pairs", "input", np.exp(1j * found[:, :1]))
-    return FunctionTask(
-        found[:, 0],
-        found[:, 1],
-        linkage,
-        absolute,
-        None if links else whole,
-        links or 0,
-        tolerance=_tolerance(tolerance),
-    )
+    return found, whole
 
 
 def _samples(pairs: Number, links: int, linkage: str, absolute: bool) -> Number:
