@@ -139,6 +139,7 @@ class CouplerAtlas(ShortRepr):
         """The chains of its designs."""
         return tuple(part.chain for part in self.parts)
 
+    @checked
     def near(
         self,
         curve: Any,
@@ -169,6 +170,12 @@ class CouplerAtlas(ShortRepr):
         >>> [one.links for one in found]
         [4, 4, 4]
         """
+        if links is not None and links not in (4, 6, 8):
+            raise InvalidInput(Problem("links", f"{links!r} links are not in an atlas", "take 4, 6 or 8"))
+        if size is not None and not 0.0 < size < np.inf:
+            raise InvalidInput(Problem("size", f"lengths do not sum to {size:g}", "give a length above zero"))
+        if count < 1:
+            raise InvalidInput(Problem("count", f"{count} designs are too few", "give one or more"))
         task = tasks.curve(curve, closed=closed)
         wanted = Conditions.of(region, None, None, transmission, False, tasks.ACCURACY, obstacles)
         sought = SoughtCurve(task.points, task.closed, None, CurveConditions(wanted, size))

@@ -345,6 +345,22 @@ def test_wrong_atlases_say_what_would_do(links: int, count: int, words: str) -> 
         coupler_atlas(links, count)
 
 
+@pytest.mark.parametrize(
+    ("how", "words"),
+    [
+        ({"size": 0.0}, "size: lengths do not sum to 0"),
+        ({"size": float("nan")}, "size"),
+        ({"count": -3}, "count: -3 designs are too few"),
+        ({"links": 3}, "links: 3 links are not in an atlas"),
+        ({"links": "4"}, "links"),
+        ({"transmission": 2.0}, "transmission"),
+    ],
+)
+def test_near_says_what_is_no_condition(how: dict[str, Any], words: str) -> None:
+    with pytest.raises(InvalidInput, match=words):
+        coupler_atlas(4, 1000).near(EGG, **how)
+
+
 def test_near_keeps_to_conditions_where_designs_lie() -> None:
     made = coupler_atlas(6, 6_000)
     found = made.near(EGG, 6, links=4, sliders=False, size=30.0, region=[(-3, -5), (13, 11)], transmission=0.3)
