@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from compoundkin.base.arguments import checked, planar_numbers, real_numbers
-from compoundkin.base.arrays import TURN, Number
+from compoundkin.base.arrays import LONGEST, SHORTEST, TURN, Number
 from compoundkin.base.display import ShortRepr, count_phrase, short_repr
 from compoundkin.base.errors import InvalidInput, Problem, nearest, suggestion
 from compoundkin.model.geometry import FRAME
@@ -474,6 +474,9 @@ def curve(
     if len(moving) < FEWEST_OF_CURVE:
         what = f"{count_phrase(len(moving), 'different point')}: too few for a curve"
         raise InvalidInput(Problem("points", what, f"give {FEWEST_OF_CURVE} or more, or take the task `points`"))
+    if not SHORTEST <= extent(moving) <= LONGEST:
+        what = f"the curve has an extent of {extent(moving):g}"
+        raise InvalidInput(Problem("points", what, "choose another unit: lengths are between 1e-50 and 1e50 of it"))
     meets = abs(moving[-1] - moving[0]) <= max(MEETING * extent(moving), NEXT * np.abs(np.diff(moving)).max())
     is_closed = bool(meets if closed is None else closed)
     is_timed = at is not None or times is not None

@@ -149,8 +149,11 @@ class StudyResult(DisplaysHtml, ShortRepr):
             remedy = "take a figure, such as its least value" if values.ndim == 2 else ""
             raise InvalidInput(Problem(name, "it is not one number for each row", remedy))
 
+    @checked
     def percentiles(self, name: str, shares: Sequence[float], *, factor: float = 1.0) -> list[float]:
         """Return percentiles of a column, times a factor, among the rows that assemble; nothing where none is known.
+
+        Shares are from 0 to 100. Raises InvalidInput for others, and for a column that is no number.
 
         They are those of `numpy.percentile`, in memory that does not grow with the rows.
 
@@ -161,6 +164,10 @@ class StudyResult(DisplaysHtml, ShortRepr):
         >>> least == float(strokes.min()), middle == float(np.median(strokes))
         (True, True)
         """
+        self._check_number(name)
+        wrong = next((share for share in shares if not 0.0 <= share <= 100.0), None)
+        if wrong is not None:
+            raise InvalidInput(Problem("shares", f"{wrong:g} is no percentile", "give numbers from 0 to 100"))
 
         def known() -> Iterator[Number]:
             for piece in self.rows.pieces(name, ASSEMBLED):

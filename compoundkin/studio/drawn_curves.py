@@ -8,12 +8,12 @@ there. Each suggestion is a whole document, with what a thumbnail of it needs.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from math import floor, isfinite, log10
+from math import floor, log10
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from compoundkin.base.arrays import Number
+from compoundkin.base.arrays import LONGEST, Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.model.geometry import FRAME
 
@@ -63,7 +63,7 @@ class PenCurve(NamedTuple):
 
 def _is_place(given: Any) -> bool:
     numbers = given if isinstance(given, list | tuple) and len(given) == 2 else [None]
-    return all(isinstance(one, int | float) and not isinstance(one, bool) and isfinite(one) for one in numbers)
+    return all(isinstance(one, int | float) and not isinstance(one, bool) and abs(one) <= LONGEST for one in numbers)
 
 
 def atlas(question: Mapping[str, Any]) -> Reply:

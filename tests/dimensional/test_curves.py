@@ -539,6 +539,8 @@ def test_a_region_is_kept_by_what_is_searched() -> None:
         ([1, 2, np.nan, 4, 5, 6, 7, 8, 9], {}, "not finite"),
         (np.ones(20), {}, "1 different point"),
         ([], {}, "0 different points"),
+        (1e300 * EGG, {}, "extent of .* choose another unit"),
+        (1e-60 * EGG, {}, "choose another unit"),
     ],
 )
 def test_wrong_curves_say_what_would_do(points: Any, options: Any, words: str) -> None:

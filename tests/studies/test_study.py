@@ -395,3 +395,20 @@ def test_rows_whose_wheels_do_not_fit_are_not_assembled() -> None:
     assert set(found["reason"][~fits]) == {"planet in annulus does not fit"}
     with pytest.raises(ck.errors.InvalidMechanism, match=r"require a distance of 52, but P and O on 'arm' are"):
         found.mechanism(0)
+
+
+@pytest.mark.parametrize(
+    ("name", "shares", "words"),
+    [
+        ("rocker.angle.stroke", [-1.0], "shares: -1 is no percentile"),
+        ("rocker.angle.stroke", [50.0, 101.0], "shares: 101 is no percentile"),
+        ("rocker.angle.stroke", [float("nan")], "shares: nan is no percentile"),
+        ("assembled", [50.0], "assembled: it is not one number"),
+        ("rocker.angle.stork", [50.0], "no such column; .*stroke"),
+    ],
+)
+def test_wrong_percentiles_say_what_would_do(name: str, shares: list[float], words: str) -> None:
+    free = {"crank.B.x": (1.8, 2.2)}
+    result = ck.study(ck.load("crank-rocker"), free, "rocker.angle.stroke", count=16).run()
+    with pytest.raises(ck.errors.CompoundkinError, match=words):
+        result.percentiles(name, shares)

@@ -87,6 +87,8 @@ def test_the_best_of_each_number_of_links_is_among_them() -> None:
         ({"points": [[0, 0]] * 3000}, "at most 2000"),
         ({"points": [[0, float("inf")]] * 9}, "no points of a curve"),
         ({"points": [[0, 1], [True, 2]]}, "no points of a curve"),
+        ({"points": [[10**400, 1]] * 9}, "no points of a curve"),
+        ({"points": [[1e300 * k, k * k] for k in range(9)]}, "no points of a curve"),
         ({"points": [[0, 1]] * 20}, "too few for a curve"),
         ({"points": [[k, k * k] for k in range(20)], "links": 5}, "not in the atlas"),
         ({"points": [[k, k * k] for k in range(20)], "closed": "yes"}, "true or false"),
