@@ -102,6 +102,9 @@ def trace_command(
 
     _check_places(picture, folder)
     options: dict[str, Any] = {"closed": None if is_open is None else not is_open, "links": links}
+    if not 0.0 <= transmission < 90.0:
+        what = f"{transmission:g} degrees are no transmission angle"
+        raise InvalidInput(Problem("--transmission", what, "give 0 to 90"))
     if times and angles:
         raise InvalidInput(Problem("--angles", "--times is given too", "leave out one of them"))
     if column := times or angles:

@@ -508,7 +508,13 @@ def _timing(at: Any, times: Any, points: Number, closed: bool) -> CurveTiming:
     whole = long if again or not closed else long + long / len(steps)
     if at is not None:
         if abs(long) > TURN * (1.0 + SAME):
-            raise InvalidInput(Problem(where, f"{np.rad2deg(abs(long)):.6g} degrees are more than a turn", "radians"))
+            raise InvalidInput(
+                Problem(
+                    where,
+                    f"{np.rad2deg(abs(long)):.6g} degrees are more than a turn",
+                    "they are radians, in files degrees",
+                )
+            )
         if not closed and abs(long) > TURN * (1.0 - SAME):
             what = "an open curve takes less than a turn: after one its point is where it began"
             raise InvalidInput(Problem(where, what, "leave out closed, or give less"))
@@ -867,7 +873,11 @@ def read_task(document: Mapping[str, Any]) -> tuple[Task, dict[str, Any]]:
     _known("conditions.", said, CONDITIONS)
     conditions = dict(said)
     if "transmission" in conditions:
-        conditions["transmission"] = _radians("conditions.transmission", conditions["transmission"])
+        least = _radians(where := "conditions.transmission", conditions["transmission"])
+        if not isinstance(least, float) or not 0.0 <= least < np.pi / 2.0:
+            what = f"{short_repr(conditions['transmission'])} is no transmission angle"
+            raise InvalidInput(Problem(where, what, "write degrees, from 0 to 90"))
+        conditions["transmission"] = least
     missing = next((key for key in needed if key not in given), None)
     if missing is not None:
         raise InvalidInput(Problem(missing, "it is missing", f"a task of {kind} needs {', '.join(needed)}"))
