@@ -149,34 +149,44 @@ def _made_profile(
     rest = TURN - over - dwell - back
     if min(rise, over, back) <= 0 or rest < 0:
         raise refused("rise, dwell and return are no part of a turn", f"together at most {TURN:g} degrees")
-    law = "cycloidal"
     parts = [(over, rise), (dwell, 0.0), (back, -rise), (rest, 0.0)]
     number = sheet.number
     program = [
-        {"law": law, "over": number(long), "rise": number(by)} if by else {"law": "dwell", "over": number(long)}
+        {"law": "cycloidal", "over": number(long), "rise": number(by)} if by else {"law": "dwell", "over": number(long)}
         for long, by in parts
         if long
     ]
     made = {"kind": "made", "program": program, "base": number(numbers["radius"])}
     made |= {"follower": "roller", "roller": number(numbers["roller"])} if numbers["roller"] else {}
-    centre, place = sheet.place(axis), sheet.place(letter)
     slide = next((t for name, _, t in sheet.tables() if name == "slides" and t.get("link") == follower), None)
     if slide is not None:
-        if slide.get("on", FRAME) != FRAME:
-            raise refused(f"{follower} does not slide on the frame", "choose another point")
-        along = direction_of(sheet, slide)
-        through = sheet.place(slide["through"])
-        # a guide beside the axis is one beside the cam's middle
-        away = ((through - centre) * along.conjugate()).imag
-        if ((place - centre) * along.conjugate()).real < 0:
-            raise refused("it slides toward the cam", "turn the slide by 180 degrees")
-        return made | {"angle": round(degrees(cmath.phase(along)), DIGITS) + 0.0, "offset": number(away)}
+        return made | _sliding_follower(sheet, sheet.place(axis), sheet.place(letter), slide)
+    return made | _swinging_follower(sheet, sheet.place(axis), letter, follower)
+
+
+def _sliding_follower(
+    sheet: EditedDocument, centre: complex, place: complex, slide: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return how a follower that slides lies to the cam's centre. Raises InvalidInput where a cam cannot lead it."""
+    if slide.get("on", FRAME) != FRAME:
+        raise refused(f"{slide['link']} does not slide on the frame", "choose another point")
+    along = direction_of(sheet, slide)
+    # a guide beside the axis is one beside the cam's middle
+    away = ((sheet.place(slide["through"]) - centre) * along.conjugate()).imag
+    if ((place - centre) * along.conjugate()).real < 0:
+        raise refused("it slides toward the cam", "turn the slide by 180 degrees")
+    return {"angle": round(degrees(cmath.phase(along)), DIGITS) + 0.0, "offset": sheet.number(away)}
+
+
+def _swinging_follower(sheet: EditedDocument, centre: complex, letter: str, follower: str) -> dict[str, Any]:
+    """Return how a follower that swings lies to the cam's centre. Raises InvalidInput where it has no fixed pivot."""
     pivot = next((k for k in sheet.points(follower) if k != letter and sheet.is_fixed(k)), None)
     if pivot is None:
         raise refused(f"{follower} neither slides on the frame nor turns about a fixed point", "ground its end")
+    place = sheet.place(letter)
     arm, to = place - sheet.place(pivot), sheet.place(pivot) - centre
     side = 1 if ((place - centre) * arm.conjugate()).imag >= 0 else -1
-    return made | {"pivot": sheet.pair(to), "arm": number(abs(arm)), "side": side}
+    return {"pivot": sheet.pair(to), "arm": sheet.number(abs(arm)), "side": side}
 
 
 def stated_number(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:

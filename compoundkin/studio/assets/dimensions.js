@@ -6,7 +6,7 @@ const DRAGGED = 4; // pixels of a step of a number that is dragged
 const REST = 700; // milliseconds after the last arrow until it is one step of undo
 
 // an entry that is computed when it is first asked for: most points have no path that is drawn
-const asked = (holder, name, make) => {
+const lazy = (holder, name, make) => {
   const put = (value) => Object.defineProperty(holder, name, { value, enumerable: true });
   Object.defineProperty(holder, name, { configurable: true, enumerable: true, get: () => put(make())[name] });
 };
@@ -159,12 +159,12 @@ export class Dimensions {
     for (const { name, points: letters } of this.studio.structure.links) {
       const own = links[order.get(name)];
       if (!own) continue;
-      if (base.origins[name]) asked(origins, name, () => [told(own.x), told(own.y), Array.from(own.angle)]);
+      if (base.origins[name]) lazy(origins, name, () => [told(own.x), told(own.y), Array.from(own.angle)]);
       for (const letter of letters) {
         const [px, py] = at(name, letter);
         if (known.has(letter) || px === undefined) continue;
         known.add(letter);
-        asked(points, letter, () => {
+        lazy(points, letter, () => {
           const xs = Float64Array.from(own.x, (x, k) => x + Math.cos(own.angle[k]) * px - Math.sin(own.angle[k]) * py);
           return [told(xs), told(Float64Array.from(own.y, (y, k) => y + Math.sin(own.angle[k]) * px + Math.cos(own.angle[k]) * py))];
         });
