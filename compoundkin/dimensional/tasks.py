@@ -618,7 +618,11 @@ def _samples(pairs: Number, links: int, linkage: str, absolute: bool) -> Number:
         raise InvalidInput(Problem("pairs", "the output does not move", "a function has different outputs"))
     if linkage != "slider-crank" and stroke > TURN:
         what = f"the output swings by {np.rad2deg(stroke):.6g} degrees, more than a turn"
-        raise InvalidInput(Problem("pairs", what, 'give radians; displacements are of linkage="slider-crank"'))
+        raise InvalidInput(
+            Problem(
+                "pairs", what, 'angles are radians, in files degrees; displacements are of linkage = "slider-crank"'
+            )
+        )
     if around > 2.0 * np.pi * (1.0 + SAME):
         raise InvalidInput(Problem("pairs", "they go beyond a turn", "give inputs within one turn"))
     if around > 2.0 * np.pi * (1.0 - SAME):

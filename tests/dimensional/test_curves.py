@@ -18,7 +18,7 @@ from compoundkin.dimensional import coupler_atlas as atlases
 from compoundkin.dimensional import curve_fitting, defects
 from compoundkin.dimensional.coupler_atlas import coefficients, coupler_atlas, likeness, mean_distance, resampled
 from compoundkin.dimensional.curve_chains import CurveChain, Laying, curve_chains, turn
-from compoundkin.dimensional.tasks import extent
+from compoundkin.dimensional.tasks import extent, read_task
 from compoundkin.errors import InvalidInput
 from compoundkin.files.curve_files import read_curve
 from compoundkin.synthesis.chains.mechanism_names import structure_name
@@ -727,3 +727,13 @@ def test_shapes_of_an_svg_are_curves(tmp_path: Path, text: str, long: float, are
     assert ck.tasks.curve(found).closed
     assert np.abs(np.diff(found)).sum() == pytest.approx(long, rel=0.01)
     assert abs(np.sum(np.conj(found) * np.roll(found, -1)).imag) / 2 == pytest.approx(area, rel=0.01)
+
+
+def test_transmission_angles_of_files_and_options_are_told_in_degrees(tmp_path: Path) -> None:
+    """They were told in radians, which nobody had written."""
+    table = file_of(tmp_path, "c.csv", "".join(f"{p.real},{p.imag}\n" for p in EGG))
+    result = CliRunner().invoke(cli, ["trace", str(table), "--transmission", "95"])
+    assert "95 degrees are no transmission angle" in result.stderr
+    document = {"format": 1, "task": "swing", "angle": 45, "conditions": {"transmission": 120}}
+    with pytest.raises(InvalidInput, match=r"conditions\.transmission: 120 is no .*degrees, from 0 to 90"):
+        read_task(document)

@@ -125,7 +125,7 @@ def test_slopes_are_differences(chain: FunctionChain) -> None:
         (np.stack([TURN, np.cos(TURN)], -1)[:5], {"links": 6}, "no samples of a function"),
         (np.stack([TURN, 0 * TURN], -1), {"links": 6}, "does not move"),
         (np.stack([TURN, 1 + 1e-16 * TURN], -1), {"links": 6}, "does not move"),
-        (np.stack([TURN, 20 * np.cos(TURN)], -1), {"links": 6}, "swings by 2291.83 degrees.*give radians"),
+        (np.stack([TURN, 20 * np.cos(TURN)], -1), {"links": 6}, "swings by 2291.83 degrees.*angles are radians"),
         (np.stack([TURN, np.cos(TURN)], -1)[[*range(9), 3]], {"links": 6}, "are equal; leave one out$"),
         (np.stack([2 * TURN, np.cos(TURN)], -1), {"links": 6}, "beyond a turn"),
         (np.stack([np.linspace(0, 2 * np.pi, 30), np.linspace(0, 1, 30)], -1), {"links": 6}, "after a turn"),
