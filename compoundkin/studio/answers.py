@@ -1,9 +1,9 @@
 """`answer`: what the studio is asked of a document, and what it replies, as plain data.
 
 `structure` is what follows from letters, with where everything is; `motion` is all poses over the range of the drivers;
-`edit` changes the text, `offers` says which edits could. All other questions are those of `findings`. What is not yet a
-mechanism is shown as far as it goes: what cannot be part of one is set aside, named with its remedy, and the rest is
-taken apart.
+`edit` changes the text, `offers` says which edits could. All other questions are those of `findings`, and of
+`drawn_curves` for the pen. What is not yet a mechanism is shown as far as it goes: what cannot be part of one is set
+aside, named with its remedy, and the rest is taken apart (`reading`).
 """
 
 from __future__ import annotations
