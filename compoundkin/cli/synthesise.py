@@ -60,8 +60,8 @@ Examples:
   compoundkin trace curve.csv
   compoundkin trace letter.svg --links 4 --save found --picture found.svg
   compoundkin trace path.dxf --transmission 30 --format html -o found.html
-  compoundkin trace tracked.csv --times t              # a column of times, the driver turns evenly
-  compoundkin trace tracked.csv --angles crank         # a column of the driver's angles in degrees
+  compoundkin trace tracked.csv --times t       # the driver turns evenly
+  compoundkin trace tracked.csv --angles crank  # a column in degrees
   compoundkin trace foot.svg --obstacle box.svg --obstacle ground.csv
 """
 )
