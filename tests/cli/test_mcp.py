@@ -112,6 +112,7 @@ def test_it_ends_by_a_signal_while_its_client_is_silent(number: signal.Signals, 
         served.communicate()
 
 
+@pytest.mark.full
 def test_reports_forces_and_better_dimensions() -> None:
     document = tomllib.loads(FOUR_BAR)
     hold = {"mechanism": document, "torques": ["rocker=-120"], "units": "mm,kg,N", "statics": True}

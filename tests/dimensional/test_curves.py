@@ -172,6 +172,7 @@ def test_a_planted_four_bar_is_traced(seed: int) -> None:
     assert answer[0].error < 0.01 * np.sqrt(np.mean(np.abs(target - target.mean()) ** 2))
 
 
+@pytest.mark.full
 def test_answers_do_not_depend_on_size_place_or_mirror(monkeypatch: pytest.MonkeyPatch) -> None:
     """Moved by 1e5 a curve is known to 1e-11; rounds of random moves would make other answers of that."""
     monkeypatch.setattr(curve_fitting, "ROUNDS", 1)
@@ -361,6 +362,7 @@ def test_near_says_what_is_no_condition(how: dict[str, Any], words: str) -> None
         coupler_atlas(4, 1000).near(EGG, **how)
 
 
+@pytest.mark.full
 def test_near_keeps_to_conditions_where_designs_lie() -> None:
     made = coupler_atlas(6, 6_000)
     found = made.near(EGG, 6, links=4, sliders=False, size=30.0, region=[(-3, -5), (13, 11)], transmission=0.3)
@@ -641,6 +643,7 @@ def test_the_verb_writes_mechanisms_and_a_picture(tmp_path: Path) -> None:
     assert plain_distance(path, EGG) < 0.1
 
 
+@pytest.mark.full
 def test_the_verb_takes_times_angles_and_obstacles(tmp_path: Path) -> None:
     """Of a tracker's table with a lost point: its times, its crank in degrees, and a box that links keep out of."""
     t = np.linspace(0, 0.95, 20)

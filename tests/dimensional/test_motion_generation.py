@@ -289,6 +289,7 @@ def test_a_planted_path_with_timing_is_found(case):
         assert np.max(np.abs(turned - 1.0)) < 1e-9
 
 
+@pytest.mark.full
 def test_three_points_with_timing_leave_a_family():
     answer = ck.synthesise(ck.tasks.points([(0, 0), (1, 0.8), (2, 0)], at=ck.deg([0, 60, 120])))
     assert "family" in answer.complete

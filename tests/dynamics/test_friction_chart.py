@@ -168,6 +168,7 @@ def test_a_strand_loads_rubbing_pins() -> None:
     assert efforts(found) < 1e-11
 
 
+@pytest.mark.full
 def test_a_taut_belt_holds_its_wheels_until_the_torque_overcomes_both_pins() -> None:
     """At rest each pin has the sum of both strands; the second pin's moment counts by the ratio."""
     tension, apart, growth = 100.0, 0.3, 5.0
@@ -222,6 +223,7 @@ def test_a_five_bar_with_rubbing_pins_loses_what_its_frictions_take() -> None:
     assert efforts(found) < 1e-9
 
 
+@pytest.mark.full
 def test_blocks_bounce_off_their_stop() -> None:
     """The upper block hits the end of its way on the lower one: ways, momenta and the energy lost there."""
     floor, top, end = 0.1, 0.3, 0.5

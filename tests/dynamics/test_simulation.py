@@ -589,6 +589,7 @@ def test_friction_and_a_spring_come_to_rest() -> None:
     assert found.energy.worst < 1e-9
 
 
+@pytest.mark.full
 def test_a_motor_that_is_switched_by_its_speed() -> None:
     """It holds 20 rad/s, on and off, as long as it is stronger than the load, which exceeds it after 0.5 s."""
     switched = rotor_under(ck.effort("O", lambda w: np.where(w < 20.0, 5.0, 0.0)))
@@ -729,6 +730,7 @@ def test_a_press_that_stalls_stands_still(load: str) -> None:
     assert stood.energy.worst < 1e-9
 
 
+@pytest.mark.full
 def test_a_brake_that_holds_the_speed_of_a_piston() -> None:
     """It brakes above 2 m/s only: the piston keeps 2 m/s until the crank can no more."""
     braked = press(ck.effort("guide", lambda v: -20.0 * (v > 2.0)), ck.torque("crank", 4.0))

@@ -258,6 +258,7 @@ def test_circuits_begin_where_a_written_mode_has_the_mechanism(sign: int) -> Non
         assert f"Solving begins on circuit {circuit}," in " ".join(told.split())
 
 
+@pytest.mark.full
 def test_circuits_of_many_groups_are_refused_at_once() -> None:
     """Each of twenty dyads doubles the branches: the search went on for ten minutes and more."""
     with pytest.raises(ck.errors.InvalidInput, match="the groups multiply them"):

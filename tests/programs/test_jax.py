@@ -88,6 +88,7 @@ def test_slopes_are_those_of_differences() -> None:
     np.testing.assert_allclose(slope, (ends[0] - ends[1]) / 2e-5, rtol=1e-7)
 
 
+@pytest.mark.full
 def test_slopes_are_numbers_where_outputs_are() -> None:
     """A crank too long for a full turn: poses that are left out must not spoil the slope of the others."""
     compiled = compile(six_bar.mechanism(), ["G.acceleration", "A"], free="crank.D")

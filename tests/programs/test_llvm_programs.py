@@ -35,6 +35,7 @@ def machine(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> 
     return request.param
 
 
+@pytest.mark.full
 def test_every_operation_in_every_stratum() -> None:
     """Many designs or many poses, and one runner for all shapes; two threads change no bit."""
     graph, given, outputs = program_of_everything(7)

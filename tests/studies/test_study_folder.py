@@ -182,6 +182,7 @@ def test_a_killed_worker_loses_nothing(whole: ck.results.StudyResult, tmp_path: 
     assert_goes_on(tmp_path, whole, len(there))
 
 
+@pytest.mark.full
 def test_a_killed_client_loses_nothing(whole: ck.results.StudyResult, tmp_path: Path) -> None:
     words = (
         "import sys, time",

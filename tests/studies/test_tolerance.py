@@ -141,6 +141,7 @@ def test_figures_have_tolerances_too() -> None:
     assert (found.is_course, found.nominal, found.worst) == (False, pytest.approx(0.24), pytest.approx(0.002))
 
 
+@pytest.mark.full
 def test_random_designs_agree_with_the_slopes_where_tolerances_are_small() -> None:
     six_bar = ck.load("six-bar")
     names = ["G.position", "bar.angle", "G.velocity.length", "G.x.stroke"]

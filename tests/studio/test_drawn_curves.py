@@ -47,7 +47,7 @@ def off(text: str, curve: np.ndarray, closed: bool) -> float:
     return float((there + back) / 2 if closed else there)
 
 
-@pytest.mark.parametrize("closed", [True, False])
+@pytest.mark.parametrize("closed", [True, pytest.param(False, marks=pytest.mark.full)])
 def test_suggestions_go_along_the_curve_each_step_nearer(closed: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(drawn_curves, "_atlas", lambda: coupler_atlas(4, 4_000))
     curve = EGG if closed else EGG[:50]

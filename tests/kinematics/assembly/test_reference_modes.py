@@ -64,6 +64,7 @@ def test_numbers_of_trusses(graph6):
         assert exact_count(truss.graph()) == modes
 
 
+@pytest.mark.full
 def test_numbers_of_triads_with_slides():
     expected = reference("triad_P_counts", "assembly_modes")["expected"]
     words = [word for word, count in expected.items() if isinstance(count, int)]

@@ -63,6 +63,7 @@ def test_pinned_groups_are_complete(seed, which):
     assert drawn_is_among(found)
 
 
+@pytest.mark.full
 @settings(max_examples=8)
 @given(seed=seeds, which=st.integers(0, len(SMALL) - 1), number=st.integers(1, 2))
 def test_groups_with_slides_are_complete(seed, which, number):

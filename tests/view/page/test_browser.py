@@ -206,6 +206,7 @@ def test_light_and_dark_follow_the_system_or_the_switch_and_stay(made: Made, ope
     assert now != bar
 
 
+@pytest.mark.full
 def test_paper_is_light_has_no_controls_and_all_that_is_shown(made: Made, opened: Open) -> None:
     one = opened(made(SIX_BAR), color_scheme="dark")
     one.locator(".theme").get_by_text("Dark").click()

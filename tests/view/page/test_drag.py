@@ -184,6 +184,7 @@ def test_a_point_is_dragged_and_there_is_a_way_back(made: Any, opened: Any) -> N
     assert view.complaints == []
 
 
+@pytest.mark.full
 def test_the_keyboard_alone_changes_a_dimension(made: Any, opened: Any) -> None:
     view = opened(made("six-bar"))
     view.focus(".handles [tabindex='0']")

@@ -315,6 +315,7 @@ def test_a_thousand_malformed_addresses_change_nothing(whole: Any) -> None:
     assert numbers(whole) == {}
 
 
+@pytest.mark.full
 def test_an_address_that_does_not_fit_is_told_above_the_sketch(made: Any, opened: Any) -> None:
     """Whoever opens a link sees why nothing was changed, on a desk and on a phone, without scrolling."""
     for size in (DESK, PHONE):

@@ -427,6 +427,7 @@ def test_what_is_drawn_snaps_and_takes_typed_lengths(window: Any) -> None:
     assert seen.complaints == []
 
 
+@pytest.mark.full
 def test_one_bar_grows_alone_locks_hold_and_several_move(window: Any) -> None:
     seen = window()
     four_bar(seen)
@@ -492,6 +493,7 @@ def test_a_cam_touches_its_roller_as_drawn_and_is_seen_whole(window: Any) -> Non
     assert seen.complaints == []
 
 
+@pytest.mark.full
 def test_the_menu_says_why_and_forms_make_gears(window: Any) -> None:
     """What cannot be done is grey, with its reason; Alt takes a bar off; a slide is turned by its grip."""
     seen = window()

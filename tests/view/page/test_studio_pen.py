@@ -96,6 +96,7 @@ def test_a_curve_brings_linkages_and_one_of_them_is_the_document(window: Any) ->
     assert seen.complaints == []
 
 
+@pytest.mark.full
 def test_a_finger_draws_and_a_second_one_does_not(window: Any) -> None:
     axe = pytest.importorskip("axe_playwright_python.sync_playwright")
     seen = window(size=(390, 844), has_touch=True)

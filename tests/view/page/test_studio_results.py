@@ -136,6 +136,7 @@ def test_a_server_that_comes_back_goes_on(window: Any) -> None:
     assert seen.view.locator("#save").is_enabled()
 
 
+@pytest.mark.full
 def test_two_windows_of_one_file_lose_nothing(window: Any, contexts: Any) -> None:
     one = window(START)
     other = Window(contexts(DESK, "").new_page(), one.server)

@@ -50,6 +50,7 @@ def test_markdown_and_json_are_whole(made: ck.results.Report) -> None:
     assert f"rod{GROUPS - 1}" in made.markdown()
 
 
+@pytest.mark.full
 def test_reports_of_a_hundred_links_are_whole_as_they_are() -> None:
     made = ck.report(ck.decompose(fan(49)))
     assert made.text() == made.text(whole=True)
