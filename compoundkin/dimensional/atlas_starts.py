@@ -52,7 +52,7 @@ def _of_chain(
     if not _has_point(graph):
         for node in own.nodes:
             own.nodes[node]["has_point"] = False
-    is_same = (lambda a, b: a == b), (lambda a, b: a["is_slide"] == b["is_slide"])
+    is_same = (lambda a, b: a == b), (lambda a, b: a["code"] == b["code"])
     found = list(nx.isomorphism.GraphMatcher(own, graph, *is_same).isomorphisms_iter())
     if not found:
         return
@@ -87,11 +87,9 @@ def _graph(mechanism: Mechanism, crank: str) -> nx.Graph:
         on = mechanism.carriers[letter]
         for k, one in enumerate(on):
             for other in on[k + 1 :]:
-                graph.add_edge(one, other, letter=letter, is_slide=False)
+                graph.add_edge(one, other, letter=letter, code="")
     for pair in mechanism.written_pairs:
-        # of gears there is no edge of this kind
-        kind = True if pair.code == "P" and len(pair.members) == 2 else pair.code
-        graph.add_edge(*pair.members[:2], letter=pair.name, is_slide=kind)
+        graph.add_edge(*pair.members[:2], letter=pair.name, code=pair.code)
     return graph
 
 

@@ -347,7 +347,7 @@ def curve_chain(plan: ChainPlan) -> CurveChain:
         points.setdefault(names.rod, {})
         added += [length_number(component_names(f"{name}.{names.joint}")[0]) for name in (names.rod, names.lever)]
     points.setdefault(plan.traced, {})[POINT] = _POINT
-    items, numbers = _base(plan, points)
+    items, numbers = base_items(plan, points)
     for names, dyad in zip(_NAMES, plan.dyads, strict=False):
         for name, letter in ((names.rod, names.on_first), (names.lever, names.on_second)):
             items.append(link(name, **{letter: 0, names.joint: names.length}, **points.get(name, {})))
@@ -372,7 +372,7 @@ def _title(plan: ChainPlan) -> str:
     return f"Eight-bar: {six}{added}" if added else six
 
 
-def _base(plan: ChainPlan, extra: dict[str, dict[str, complex]]) -> tuple[list[Item], list[FreeNumber]]:
+def base_items(plan: ChainPlan, extra: dict[str, dict[str, complex]]) -> tuple[list[Item], list[FreeNumber]]:
     """Return the items that a chain begins with, with more points on its links, and its numbers."""
 
     def points(name: str, **own: complex) -> Link:

@@ -22,7 +22,6 @@ from compoundkin.base.arrays import TURN, Number
 from compoundkin.dimensional.candidates import COUPLER, Candidates, Linkage
 from compoundkin.dimensional.curve_chains import (
     CRANK,
-    CRANKS,
     FOUR_BAR,
     GUIDE,
     LEVER,
@@ -35,6 +34,7 @@ from compoundkin.dimensional.curve_chains import (
     CurveChain,
     FreeNumber,
     Laying,
+    base_items,
     length_number,
     place_numbers,
     turn,
@@ -175,21 +175,9 @@ def _chain(base: str, first: str = "", end: str = "", sign: int = 1) -> Function
     extra: dict[str, dict[str, complex]] = {first: {"E": 1.0 + 1.0j}} if first else {}
     if end == LEVER:
         extra[FRAME] = {"F": 0.5 + 1.5j}
-    numbers = [length_number("crank.B.x", CRANKS), length_number("coupler.C.x")]
-    pivots: dict[str, complex] = {"A": 0j} if base == SLIDER_CRANK else {"A": 0j, "D": 2 + 0j}
-    items: list[Item] = [
-        link(FRAME, **pivots, **extra.get(FRAME, {})),
-        link(CRANK, A=0, B=0.5),
-        link(COUPLER, B=0, C=2, **extra.get(COUPLER, {})),
-    ]
-    output, title = f"{ROCKER}.{ANGLE}", base
-    if base == SLIDER_CRANK:
-        items += [link(SLIDER, C=0), _slide(GUIDE, SLIDER, "C", 0.0, 0.3), mode(1, SLIDER)]
-        numbers.append(FreeNumber(f"{GUIDE}.offset", *OFFSETS, False))
-        output = f"{GUIDE}.{VALUE}"
-    else:
-        items += [link(ROCKER, D=0, C=2, **extra.get(ROCKER, {})), mode(1, ROCKER)]
-        numbers.append(length_number("rocker.C.x"))
+    plan = ChainPlan(base, (), COUPLER)
+    items, numbers = base_items(plan, extra)
+    output, title = f"{GUIDE}.{VALUE}" if base == SLIDER_CRANK else f"{ROCKER}.{ANGLE}", base
     if first:
         title = _TITLES[base, first, end]
         items += [link(ROD, E=0, G=2.5), link(end, G=0) if end == RAM else link(end, F=0, G=2.5), mode(sign, end)]
@@ -202,8 +190,7 @@ def _chain(base: str, first: str = "", end: str = "", sign: int = 1) -> Function
         else:
             numbers += [*place_numbers(FRAME, "F"), length_number("lever.G.x")]
             output = f"{LEVER}.{ANGLE}"
-    mechanism = Mechanism(title, *items, drive(CRANK))
-    return FunctionChain(ChainPlan(base, (), COUPLER), title, mechanism, tuple(numbers), output)
+    return FunctionChain(plan, title, Mechanism(title, *items, drive(CRANK)), tuple(numbers), output)
 
 
 # --- the atlas of outputs -------------------------------------------------------------------------------------

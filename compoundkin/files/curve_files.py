@@ -8,6 +8,7 @@ import xml.etree.ElementTree as ElementTree
 from collections.abc import Container, Iterator
 from itertools import pairwise
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -41,16 +42,9 @@ def read_curve(path: str | os.PathLike[str], fewest: int = 0) -> Number:
     form = SUFFIXES["curve"].get(suffix_of(path))
     if form is None:
         raise unreadable(path, "curves are not read from such files", f"give one of {', '.join(SUFFIXES['curve'])}")
-    try:
-        content = Path(path).read_bytes()
-    except OSError as error:
-        raise unreadable(path, f"it cannot be read: {error.strerror or error}") from None
-    curves = {"csv": _of_table, "svg": _of_svg, "dxf": _of_dxf}[form](content, str(path))
+    curves = {"csv": _of_table, "svg": _of_svg, "dxf": _of_dxf}[form](_content(path), str(path))
     found = max(curves, key=lambda curve: float(np.abs(np.diff(curve)).sum()), default=np.zeros(0, complex))
-    if len(found) < 2:
-        raise unreadable(path, "there is no curve in it", "a curve is a path, a polyline, or two columns x and y")
-    if not np.isfinite(found).all():
-        raise unreadable(path, "a number of the curve is not finite")
+    _check(path, found)
     if form != "csv" and len(found) <= fewest:  # lines of a drawing are as much of it as its corners
         many = -(-PIECES // (len(found) - 1)) * (len(found) - 1)
         steps = np.linspace(0.0, len(found) - 1.0, many + 1)
@@ -65,27 +59,35 @@ def read_timed_curve(path: str | os.PathLike[str], column: str) -> tuple[Number,
     """
     if SUFFIXES["curve"].get(suffix_of(path)) != "csv":
         raise unreadable(path, "only a table has columns", "give a .csv with a heading, such as t,x,y")
-    places = read_curve(path)
-    rows = _rows(_lines(Path(path).read_bytes(), str(path)))
-    headings = next((row for row in rows if {"x", "y"} <= set(_words(row))), None)
-    if headings is None:
+    table = _table(_content(path), str(path))
+    _check(path, table.places)
+    if not table.headings:
         raise InvalidInput(Problem(str(path), "no heading names its columns", f"put a first line: {column},x,y"))
-    names = [cell.strip().lower() for cell in headings]
-    at = next((k for k, word in enumerate(zip(names, _words(headings), strict=True)) if column.lower() in word), None)
+    names = zip((cell.lower() for cell in table.headings), _words(table.headings), strict=True)
+    at = next((k for k, both in enumerate(names) if column.lower() in both), None)
     if at is None:
-        known = ", ".join(cell.strip() for cell in headings)
+        known = ", ".join(table.headings)
         raise InvalidInput(Problem(str(path), f"it has no column {column}", f"its columns are {known}"))
-    x, y = (_words(headings).index(axis) for axis in "xy")
-    values = []
-    for row in rows[rows.index(headings) + 1 :]:
-        cells = [row[c] if c < len(row) else "" for c in (x, y)]
-        if any(cells):
-            value = _real(row[at]) if at < len(row) else None
-            if value is None:
-                where = f"{path}: {', '.join(row)}"
-                raise InvalidInput(Problem(where, f"there is no number in column {column}", "each point needs one"))
-            values.append(value)
-    return places, np.array(values)
+    values = [_real(row[at]) if at < len(row) else None for row in table.rows]
+    if None in values:
+        where = f"{path}: {', '.join(table.rows[values.index(None)])}"
+        raise InvalidInput(Problem(where, f"there is no number in column {column}", "each point needs one"))
+    return table.places, np.array(values)
+
+
+def _content(path: str | os.PathLike[str]) -> bytes:
+    try:
+        return Path(path).read_bytes()
+    except OSError as error:
+        raise unreadable(path, f"it cannot be read: {error.strerror or error}") from None
+
+
+def _check(path: str | os.PathLike[str], curve: Number) -> None:
+    """Raise InvalidInput for what is no curve."""
+    if len(curve) < 2:
+        raise unreadable(path, "there is no curve in it", "a curve is a path, a polyline, or two columns x and y")
+    if not np.isfinite(curve).all():
+        raise unreadable(path, "a number of the curve is not finite")
 
 
 def _text(content: bytes, where: str) -> str:
@@ -95,19 +97,33 @@ def _text(content: bytes, where: str) -> str:
         raise unreadable(where, f"it is not UTF-8 text (byte {error.start})", "save it as UTF-8") from None
 
 
+class _Table(NamedTuple):
+    """The headings of a table, none where there are no words; its rows that have a place, and these places (n,)."""
+
+    headings: list[str]
+    rows: list[list[str]]
+    places: Number
+
+
 def _of_table(content: bytes, where: str) -> list[Number]:
+    return [_table(content, where).places]
+
+
+def _table(content: bytes, where: str) -> _Table:
     rows = _rows(_lines(content, where))
     columns, first = _columns(rows, where)
-    places = []
+    known, places = list[list[str]](), list[complex]()
     for k, row in enumerate(rows[first:], start=first + 1):
         cells = [row[c] if c < len(row) else "" for c in columns]
-        numbers = [_real(cell) for cell in cells]
-        if None in numbers:
+        x, y = map(_real, cells)
+        if x is None or y is None:
             if not any(cells):  # an empty line of a table: where a tracker lost the point
                 continue
             raise InvalidInput(Problem(f"{where}: line {k}", f"{', '.join(cells)} are no two numbers", "write x, y"))
-        places.append(complex(*numbers))  # type: ignore[arg-type]
-    return [np.array(places)]
+        known.append(row)
+        places.append(complex(x, y))
+    has_headings = 0 < first <= len(rows) and {"x", "y"} <= set(_words(rows[first - 1]))
+    return _Table(rows[first - 1] if has_headings else [], known, np.array(places, complex))
 
 
 def _lines(content: bytes, where: str) -> list[str]:

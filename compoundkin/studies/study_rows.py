@@ -15,6 +15,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import suppress_pose_warnings
+from compoundkin.base.linear import one_thread
 from compoundkin.studies.study_plan import StudyPlan
 from compoundkin.studies.study_program import StudyColumn, StudyProgram
 
@@ -147,6 +148,7 @@ class StudyTask:
         return compute_rows(self.plan, rows)
 
 
+@one_thread  # a study has threads of its own
 def compute_rows(plan: StudyPlan, rows: range) -> dict[str, Number]:
     """Return some rows of a study."""
     with suppress_pose_warnings():

@@ -14,7 +14,6 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, NotAssembled, NotDetermined, Problem
 from compoundkin.base.extremes import MOST_ADDED, POLE, ROUNDING, ZERO, Offers, SoughtPeaks, Windows, best_of, peaks
-from compoundkin.base.linear import one_thread
 from compoundkin.kinematics.extremes import extremes
 from compoundkin.kinematics.extremes.dead_points import moving_driver
 from compoundkin.kinematics.extremes.stretches import SAME_PLACE
@@ -69,7 +68,6 @@ class CourseSearch(ShortRepr):
         places = np.broadcast_to(refined_samples(poses), (number, parts * (poses - 1) + 1))
         return parts, self.sign * self.designs.values_at(self.name, np.arange(number), places, self.is_angle)
 
-    @one_thread  # a study has its threads already
     def _searched(self, parts: int, course: Number) -> tuple[Number, Number]:
         """Return the greatest values and their places: of samples, and of peaks in the windows around them."""
         # places of extremes are found in less time than their values

@@ -61,8 +61,6 @@ AGREES = 1e-9
 OF_SIZE_ONE = tuple(word for word, one in ({**FORCES["pairs"], **FORCES["links"]}).items() if one.dimension == "force")
 # The kind of the rows that are given, and the name of the time among them.
 GIVEN = "load"
-
-
 # A uniform plate of so many corners has no other ones, whatever its dimensions are.
 CORNERS = 3
 
@@ -388,10 +386,8 @@ class RecordedAnalysis:
     def _inertial(self) -> Iterator[RecordedAction]:
         """Yield what masses oppose to their accelerations."""
         for mass in self.at.masses if self.own.inertia else ():
-            place, description = (
-                self.at.place(mass.link, mass.at).c[0],
-                described_wrench(INERTIA, mass.name, mass.link, ""),
-            )
+            place = self.at.place(mass.link, mass.at).c[0]
+            description = described_wrench(INERTIA, mass.name, mass.link, "")
             yield RecordedAction(description, mass.link, place, self.at.inertia(mass))
 
     def _of_pairs(self) -> Iterator[RecordedAction]:
