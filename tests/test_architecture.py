@@ -210,7 +210,8 @@ def test_solvers_are_told_apart_in_their_own_folder_only() -> None:
 
 def test_nobody_follows_configurations_outside_kinematics() -> None:
     """Neither by the class and its module, nor by the function."""
-    tracking = re.compile(r"\bConfigurationCurve\b|\bcompoundkin\.kinematics\.curve\.configuration_curve\b")
+    modules = r"\bcompoundkin\.kinematics\.curve\.(configuration_curve|followed_poses)\b"
+    tracking = re.compile(rf"\bConfigurationCurve\b|{modules}")
     others = [path for path in FILES if room(path) not in ("kinematics", "__init__")]
     only_shrinks(f"{where(p)}: {word}" for p in others for word in tracking.findall(code_of(p)))
 

@@ -11,7 +11,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, column
 from compoundkin.base.bracketing import bisect_brackets
-from compoundkin.kinematics.curve.group_paths import why_no_return
+from compoundkin.kinematics.curve.closed_states import why_no_return
 from compoundkin.kinematics.motion import Motion
 
 # Halvings of the distance between two neighbouring poses: 2**-45 of it is far below 1e-9 of any driver value.

@@ -14,8 +14,8 @@ from compoundkin.base.bracketing import bisect_brackets
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName
 from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, places
-from compoundkin.kinematics.curve.change_points import rates_at
-from compoundkin.kinematics.curve.configuration_curve import FollowedPoses
+from compoundkin.kinematics.curve.double_roots import rates_at
+from compoundkin.kinematics.curve.followed_poses import FollowedPoses
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.quantities import AtPoses, Quantity, quantity, whole_and_part
 from compoundkin.model.attributes import LENGTH, RATE_OF, derivative_order, unit_of

@@ -17,8 +17,8 @@ from compoundkin.base.errors import ExplainsAttributes, Problem, UnknownName, ne
 from compoundkin.base.poses import FIXED, End, Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics.block import BLOCK, Block, blocks, places, repeated, size_in, with_poses
-from compoundkin.kinematics.curve.change_points import rates_at
-from compoundkin.kinematics.curve.configuration_curve import FollowedPoses
+from compoundkin.kinematics.curve.double_roots import rates_at
+from compoundkin.kinematics.curve.followed_poses import FollowedPoses
 from compoundkin.kinematics.curve.modes import GroupMode, modes_of
 from compoundkin.kinematics.derived.figures_of_forces import AsksForces
 from compoundkin.kinematics.driver_values import Inputs, PoseGrid, fit

@@ -14,9 +14,11 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, NotDetermined
 from compoundkin.base.poses import FIXED
 from compoundkin.base.series import Series
-from compoundkin.kinematics.curve.configuration_curve import ConfigurationCurve, FollowedPoses, Turns
+from compoundkin.kinematics.curve.configuration_curve import ConfigurationCurve
+from compoundkin.kinematics.curve.followed_poses import FollowedPoses
 from compoundkin.kinematics.curve.group_paths import GroupPath
 from compoundkin.kinematics.curve.modes import StatedModes
+from compoundkin.kinematics.curve.turn_counting import Turns
 from compoundkin.kinematics.driver_values import Inputs, inputs, mapped, times_of
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve, solving_order_of

@@ -33,9 +33,11 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics.block import BLOCK, Block, JoinedBlocks, blocks, places, poses_at, size_in
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, numbers_at, placed_at
-from compoundkin.kinematics.curve.change_points import NEAR, NEARLY, expanded, near_groups, pass_through
-from compoundkin.kinematics.curve.configuration_curve import FollowedPoses, follow, leaping_groups
+from compoundkin.kinematics.curve.change_points import NEAR, near_groups, pass_through
+from compoundkin.kinematics.curve.configuration_curve import leaping_groups
+from compoundkin.kinematics.curve.double_roots import NEARLY, expanded
 from compoundkin.kinematics.curve.driver_path import drawn_value
+from compoundkin.kinematics.curve.followed_poses import FollowedPoses, follow
 from compoundkin.kinematics.curve.modes import StatedModes, branches_of, signs_of, stated_by
 from compoundkin.kinematics.driver_values import Inputs, by_name, inputs, times_of
 from compoundkin.kinematics.motion import LinkErrors, Motion, errors_at
@@ -323,7 +325,7 @@ def solve_all_blocks(followed: FollowedPoses, order: int) -> tuple[Motion, Numbe
         near = found.near if followed.is_dense else found.near | near_groups(followed.curve)
         searched = pass_through(followed.curve, near) if near else followed.curve
         curve = searched if searched.flips.keys() != followed.curve.flips.keys() else None
-        leaping = leaping_groups(followed) if curve is None else []
+        leaping = leaping_groups(followed.curve) if curve is None else []
         if leaping:
             curve = followed.curve.with_followed(leaping)
         if curve is None and followed.lost and not followed.curve.has_returns:

@@ -11,7 +11,7 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series, constant
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.curve.configuration_curve import FollowedPoses
+from compoundkin.kinematics.curve.followed_poses import FollowedPoses
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.solving_order import run
 from compoundkin.model.geometry import FRAME

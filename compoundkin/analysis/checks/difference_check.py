@@ -13,7 +13,8 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.block import BLOCK, places
-from compoundkin.kinematics.curve.change_points import rates_at, times_to_limits
+from compoundkin.kinematics.curve.change_points import times_to_limits
+from compoundkin.kinematics.curve.double_roots import rates_at
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.finding import Finding, rounded_by, worst
 from compoundkin.model.attributes import OF_POINTS

@@ -1,44 +1,32 @@
 """The configuration curve: where a mechanism goes along its drivers' path, made once; poses are read off it.
 
 Groups with signs change them at change points, others are continued from the drawn pose both ways, and angles are
-counted with full turns. What is chosen is a value: a curve with more change points, or a longer path, is another curve.
+counted with full turns. What is chosen is a value: a curve with more change points, a longer path, or a contact that is
+followed because it leaps, is another curve.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, Number, ascending, cross, whole_turns, wrapped
+from compoundkin.base.arrays import Number, ascending, wrapped
 from compoundkin.base.bracketing import bisect_brackets
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.poses import Pose
-from compoundkin.base.series import constant
 from compoundkin.kinematics.block import NEAREST, Block, Root, size_in
 from compoundkin.kinematics.configuration import ONLY
+from compoundkin.kinematics.curve.closed_states import with_returns
 from compoundkin.kinematics.curve.driver_path import (
-    CLOSE,
     SAME,
     SPACING,
     DriverPath,
-    PosePlaces,
-    as_column,
-    drawn_value,
-    driver_path,
 )
-from compoundkin.kinematics.curve.group_paths import (
-    MOST_KEPT,
-    GroupPath,
-    KnownSurroundings,
-    both_ways,
-    followed_path,
-    with_returns,
-)
+from compoundkin.kinematics.curve.group_paths import MOST_KEPT, GroupPath, KnownSurroundings, both_ways, followed_path
 from compoundkin.kinematics.curve.modes import (
     StatedModes,
     default_sign,
@@ -47,10 +35,15 @@ from compoundkin.kinematics.curve.modes import (
     nearest_sign,
     shows_inner,
 )
+from compoundkin.kinematics.curve.turn_counting import Turns, turns_of
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.solving_order import Choice, SolvingOrder, run
-from compoundkin.model.pairs.contract import Drivable, Ends, as_turn_counting
+
+# A change point is named by a driver value that is nearer to it than this, in places: 2.5 degrees.
+AT_BRANCH = 0.5
+# A place for what is the same at all of them.
+_NOWHERE = np.zeros((1, 1))
 
 
 class NearMiss(NamedTuple):
@@ -106,11 +99,11 @@ class ConfigurationCurve(ShortRepr):
         Both broadcast to the block, so that a column of designs and a row of places make a rectangle. `roots` says, by
         group, how square roots are taken.
         """
-        return _solved(self, part, order, _Configured(self, designs, places), upto, roots)
+        return ChosenModes(self, designs, places).solved(part, order, upto, roots)
 
     def begun(self, part: Inputs, order: int, places: Number, designs: Number) -> tuple[Block, Choice]:
         """Return a block of inputs in which no group is solved, and what chooses their configurations."""
-        choice = configured(self, designs, places)
+        choice = ChosenModes(self, designs, places)
         return self.solving_order.start(part.ends, part.series(order), order, choice.shape), choice
 
     def sign(self, k: int, designs: Number, places: Number) -> Number:
@@ -277,7 +270,7 @@ def _choose(
 
 
 @dataclass(frozen=True)
-class _Configured:
+class ChosenModes:
     """The choice at places of a path: the configuration that was chosen is kept."""
 
     curve: ConfigurationCurve
@@ -286,6 +279,7 @@ class _Configured:
 
     @property
     def shape(self) -> tuple[int, ...]:
+        """The shape of the block."""
         return np.broadcast_shapes(self.places.shape, self.designs.shape)
 
     @cached_property
@@ -295,51 +289,24 @@ class _Configured:
 
     def mode(self, block: Block, solver: GroupSolver) -> Number:
         """Return the followed state, or the sign."""
-        curve, k = self.curve, solver.index
         if solver.is_numbered:
-            return curve.paths[k].seeds(self.designs, self.reached)
-        # places along a motion are looked for on its path only where signs change
-        return curve.sign(k, self.designs, self.reached) if k in curve.flips else curve.sign(k, self.designs, _NOWHERE)
+            return self.curve.paths[solver.index].seeds(self.designs, self.reached)
+        return self.sign(solver.index)
+
+    def sign(self, k: int) -> Number:
+        """Return the sign of a dyad's mode. Places along a motion are looked for on its path only where it changes."""
+        return self.curve.sign(k, self.designs, self.reached if k in self.curve.flips else _NOWHERE)
 
     def angle(self, solver: GroupSolver, link: str) -> Number | None:
         """Return what was counted along the way."""
         turns = self.curve.turns.get(link)
         return None if turns is None else turns.near(self.designs, self.reached)
 
-
-def configured(curve: ConfigurationCurve, designs: Number, places: Number) -> _Configured:
-    """Return the choice at places of a curve."""
-    return _Configured(curve, designs, places)
-
-
-_NOWHERE = np.zeros((1, 1))
-# A change point is named by a driver value that is nearer to it than this, in places: 2.5 degrees.
-AT_BRANCH = 0.5
-
-
-@dataclass(frozen=True)
-class _ConfiguredAlong(_Configured):
-    """The choice at places along a motion."""
-
-    poses: PosePlaces
-
-    @cached_property
-    def reached(self) -> Number:
-        """The places on the path."""
-        return self.curve.nearest_reached(self.designs, self.poses.at(self.designs, self.places))
-
-
-def _solved(
-    curve: ConfigurationCurve,
-    part: Inputs,
-    order: int,
-    choice: _Configured,
-    upto: int | None,
-    roots: Mapping[int, Root] | None,
-) -> Block:
-    block = curve.solving_order.start(part.ends, part.series(order), order, choice.shape)
-    block.roots = roots or {}
-    return run(curve.solving_order, block, choice, upto)
+    def solved(self, part: Inputs, order: int, upto: int | None, roots: Mapping[int, Root] | None) -> Block:
+        """Solve a block of inputs, up to a group; `roots` says, by group, how square roots are taken."""
+        block = self.curve.solving_order.start(part.ends, part.series(order), order, self.shape)
+        block.roots = roots or {}
+        return run(self.curve.solving_order, block, self, upto)
 
 
 @dataclass(frozen=True)
@@ -401,136 +368,6 @@ def _parity(passed: Number) -> Number:
     return np.where(passed.sum(axis=-1) % 2, -1.0, 1.0)
 
 
-@dataclass(frozen=True, repr=False, eq=False)
-class FollowedPoses(ShortRepr):
-    """The poses of a motion on its configuration curve.
-
-    `given` are its inputs, `poses` tells where on the curve they are. `expanded` are the designs and indices of poses
-    that are solved through the double root of some groups. Places here are along the motion: indices of poses, and
-    between them.
-    """
-
-    curve: ConfigurationCurve
-    given: Inputs
-    poses: PosePlaces
-    expanded: tuple[Number, Number, Sequence[int]] | None = None
-
-    @property
-    def solving_order(self) -> SolvingOrder:
-        """The solving order, with what is followed on the curve."""
-        return self.curve.solving_order
-
-    def run(
-        self,
-        part: Inputs,
-        order: int,
-        s: Number,
-        designs: Number,
-        upto: int | None = None,
-        roots: Mapping[int, Root] | None = None,
-    ) -> Block:
-        """Solve a block of inputs in the configuration at places `s` along the motion, up to a group."""
-        return _solved(self.curve, part, order, _ConfiguredAlong(self.curve, designs, s, self.poses), upto, roots)
-
-    def sign(self, k: int, designs: Number, s: Number) -> Number:
-        """Return the sign of a dyad's mode at places along the motion."""
-        if k not in self.curve.flips:
-            return self.curve.sign(k, designs, _NOWHERE)
-        places = self.curve.nearest_reached(designs, self.poses.at(designs, s))
-        return self.curve.sign(k, designs, places)
-
-    def places_on_path(self, designs: Number, s: Number) -> Number:
-        """Return the places on the drivers' path of places along the motion."""
-        return self.curve.nearest_reached(designs, self.poses.at(designs, s))
-
-    @cached_property
-    def change_points(self) -> Mapping[int, Number]:
-        """Where groups pass change points along the motion, (designs, count), padded with inf.
-
-        Twice where the motion turns back from one.
-        """
-        every = self.curve.change_points
-        if self.given.poses == 1:
-            return {k: np.full((self.given.designs, 1), np.inf) for k in every}
-        places = np.broadcast_to(self.poses.of_poses, (self.given.designs, self.given.poses))
-        found = {}
-        for k, flips in every.items():
-            rows = [sorted(s for f in row[np.isfinite(row)] for s in _passings(places[d], f))
-                    for d, row in enumerate(flips)]  # fmt: skip
-            found[k] = np.full((len(rows), max(1, *map(len, rows))), np.inf)
-            for row, own in zip(found[k], rows, strict=True):
-                row[: len(own)] = own
-        return found
-
-    @cached_property
-    def rests(self) -> Mapping[int, Sequence[tuple[int, int]]]:
-        """By group, the designs and poses from which on the drivers rest at a change point."""
-        places = np.broadcast_to(self.poses.of_poses, (self.given.designs, self.given.poses))
-        found: dict[int, list[tuple[int, int]]] = {}
-        for k, flips in self.curve.change_points.items() if self.given.poses > 1 else ():
-            for d, row in enumerate(flips):
-                for f in row[np.isfinite(row)]:
-                    there = np.abs(places[d] - f) < SAME
-                    both = np.flatnonzero(there[1:] & there[:-1])
-                    found.setdefault(k, []).extend((d, int(i)) for i in both[:1])
-        return found
-
-    def leaves_branch(self, designs: Number, begin: Number, end: Number) -> Number:
-        """Return whether a group goes over to its other branch between poses, by their indices."""
-        low, high = (self.places_on_path(designs, at.astype(float)) for at in (begin, end))
-        found: Number = np.zeros(len(designs), dtype=bool)
-        for places in self.curve.left.values():
-            there = places[designs]
-            passes = (there - low[:, None]) * (there - high[:, None]) <= 0.0
-            found |= np.any(passes & np.isfinite(there), axis=1)
-        return found
-
-    @cached_property
-    def corners(self) -> tuple[Number, Number]:
-        """The places on the path at which a design's motion turns corners, and how wide they are.
-
-        Both are (designs, count), padded with infinity.
-        """
-        every = [one for missed in self.curve.near_misses.values() for one in missed]
-        rows = [[one for one in every if one.design == d] for d in range(self.given.designs)]
-        found = np.full((2, len(rows), max(1, *map(len, rows))), np.inf)
-        for d, own in enumerate(rows):
-            found[0, d, : len(own)], found[1, d, : len(own)] = [o.place for o in own], [o.wide for o in own]
-        return found[0], found[1]
-
-    @property
-    def lost(self) -> bool:
-        """Whether some group without a closed form was not reached at some pose."""
-        if not self.curve.paths:
-            return False
-        places, designs = self.poses.of_poses, np.arange(self.given.designs)[:, None]
-        ends = (places.min(axis=1, keepdims=True), places.max(axis=1, keepdims=True))
-        return not all(np.all(self.curve.reaches(designs, end)) for end in ends)
-
-    @property
-    def nearest_to_home(self) -> tuple[int, float]:
-        """The index of the first pose that is nearest to home, over all designs, and by how many places it is away."""
-        away = np.abs(self.poses.of_poses - self.curve.path.home).max(axis=0)
-        near = int(np.argmin(np.where(away < away.min() + CLOSE, 0.0, away)))
-        return near, float(away[near]) if away[near] > CLOSE else 0.0
-
-    @property
-    def is_dense(self) -> bool:
-        """Whether the poses are so near to each other that no change point hides between them."""
-        places, (first, last) = self.poses.of_poses, self.curve.path.ends
-        steps = np.diff(places, axis=1)
-        if not (np.all(steps >= 0.0) or np.all(steps <= 0.0)):
-            places = np.sort(places, axis=1)
-            steps = np.diff(places, axis=1)
-        widest = max(float(np.abs(steps).max(initial=0.0)), float(np.max(places.min(axis=1) - first)),
-                     float(np.max(last - places.max(axis=1))))  # fmt: skip
-        between = np.diff(self.curve.path.samples)
-        return widest <= DENSE * float(between.max(initial=0.0)) or widest <= CLOSE
-
-
-# Poses are dense where they are this part of the distance of two samples from each other: what turns four times as fast
-# as the driver does not pass a change point between them unseen.
-DENSE = 0.25
 # Followers whose coordinates (parts of the size, or radians) change by more than this from one sample to the next, and
 # by so many times more than before or after it, may leap to another contact.
 LEAP, UNEVEN = 0.02, 3.0
@@ -541,12 +378,11 @@ LEAP_HALVINGS, REMAINS = 20, 0.05
 EDGE_HALVINGS = 20
 
 
-def leaping_groups(followed: FollowedPoses) -> list[int]:
+def leaping_groups(curve: ConfigurationCurve) -> list[int]:
     """Return the groups whose contact, found anew at each pose, leaps along the path to another one.
 
     Those whose mode was chosen by its sign are to be at that contact, leaps or not.
     """
-    curve = followed.curve
     asked = sorted(curve.solving_order.followable - curve.fixed.keys())
     if not asked or len(curve.path.places) == 1:
         return []
@@ -608,302 +444,3 @@ class _ContactCoordinate:
     def _change(self, one: Number, other: Number) -> Number:
         found: Number = np.abs(wrapped(other - one) if self.solver.is_angular else other - one)
         return found
-
-
-def _passings(places: Number, flip: float) -> Iterator[float]:
-    """Yield where a motion passes a place of its path, between poses too: twice where it turns back there."""
-    there = np.abs(places - flip) < SAME
-    last = len(places) - 1
-    if there[0]:
-        yield 0.0
-    if there[last]:
-        # the motion is on one side of it
-        yield float(np.nextafter(float(last), np.inf))
-    away = np.flatnonzero(~there)
-    a, b = away[:-1], away[1:]
-    passes = (places[a] - flip) * (places[b] - flip) < 0.0
-    for one, two, crosses in zip(a.tolist(), b.tolist(), passes.tolist(), strict=True):
-        if two - one > 1:
-            yield from (float(one + 1),) * (1 if crosses else 2)
-        elif crosses:
-            yield float(one + (flip - places[one]) / (places[two] - places[one]))
-
-
-def follow(
-    solving_order: SolvingOrder,
-    given: Inputs,
-    fixed: Mapping[int, int],
-    shown: StatedModes,
-    branches: Mapping[int, tuple[float, ...]] | None = None,
-) -> FollowedPoses:
-    """Return the poses of some inputs on their curve: modes chosen at home, other groups followed from there.
-
-    Change points, and what comes back after gaps, are found while the poses are solved.
-    """
-    path, poses = driver_path(solving_order, given, shown.poses, shown.beside)
-    if solving_order.turning and solving_order.structure.mechanism.geometry.drawn:
-        given, knots = recounted(solving_order, (given, path.knots), path.at_home())
-        path = replace(path, knots=knots)
-    # only dimensions that vary along the motion ask for it
-    pose = 0 if given.is_rigid else int(np.argmin(np.abs(poses.of_poses[0] - path.home)))
-    curve = ConfigurationCurve(solving_order, path, fixed, shown, pose, branches=branches or {})
-    return FollowedPoses(curve.chosen(), given, poses)
-
-
-# From one sample to the next but one a link turns no farther than this (radians), so that no half a turn is missed;
-FARTHEST = 1.0
-
-
-# and as far as its speed in between says but for this (radians): a link that whirls round between two samples gives
-# itself away by its speed, though the whole turn does not show in its orientation.
-EVEN = 1e-5
-
-
-# So often an interval is halved at most: 5 degrees of the driver become 0.001.
-HALVINGS = 12
-
-
-BLOCK = 4096
-
-
-@dataclass(frozen=True)
-class Turns:
-    """The angle of a link at samples of a path: at `places`, (designs, samples), `start` being the sample at home."""
-
-    places: Number
-    angles: Number
-    start: int
-
-    @property
-    def first(self) -> Number:
-        """The angle at home, (designs, 1)."""
-        return self.angles[:, self.start : self.start + 1]
-
-    def near(self, designs: Number, places: Number) -> Number:
-        """Return the angle, right to less than half a turn, at places."""
-        after = np.clip(np.searchsorted(self.places, places), 1, max(len(self.places) - 1, 1))
-        after = np.minimum(after, len(self.places) - 1)
-        before = np.maximum(after - 1, 0)
-        nearer = places - self.places[before] < self.places[after] - places
-        return self.angles[designs, np.where(nearer, before, after)]
-
-
-def turns_of(curve: ConfigurationCurve, k: int, link: str, known: tuple[Number, Block] | None = None) -> Turns:
-    """Follow the angle of a link of group `k` from home. There it is nearest to the drawn one or to zero.
-
-    A driven link is as many turns ahead of its drawn angle as its driver is.
-
-    `known` is what is solved already at the samples of the path, with others half way between.
-    """
-    places, angles = _Orientation(curve, k, link, known).samples()
-    start = int(np.argmin(np.abs(places - curve.path.home)))
-    drawn = _drawn_angle(curve, k, link)
-    first = angles[:, start] if drawn is None else np.ravel(drawn)
-    return Turns(places, _unwrapped(angles, start, first), start)
-
-
-def _drawn_angle(curve: ConfigurationCurve, k: int, link: str) -> Number | None:
-    """Return the angle at which a link of group `k` is drawn, by the turns of its driver. None where it is not."""
-    drawn = curve.solving_order.structure.mechanism.drawn_poses
-    if link not in drawn:
-        return None
-    angle = as_column(drawn[link]).angle.c[0]
-    body = next(body for body in curve.solving_order.solvers[k].group.bodies if link in body.links)
-    if body.links[0] not in drawn or link == body.links[0]:
-        return angle
-    first = curve.path.at_home()
-    local = curve.solving_order.start(first.ends, first.series(0), 0, (first.designs, 1)).local[link]
-    return angle + whole_turns(_ahead_of_drawing(drawn, body.links[0], link, local))
-
-
-def _ahead_of_drawing(drawn: Mapping[str, Pose], base: str, link: str, local: Pose) -> Number:
-    """Return the angle of a driven link less its drawn one, from its pose in the base of its composite link."""
-    ahead: Number = as_column(drawn[base]).angle.c[0] + local.angle.c[0] - as_column(drawn[link]).angle.c[0]
-    return ahead
-
-
-@dataclass(frozen=True)
-class _Orientation:
-    """The orientation of a link of group `k` along the path."""
-
-    curve: ConfigurationCurve
-    k: int
-    link: str
-
-    known: tuple[Number, Block] | None = None
-
-    def samples(self) -> tuple[Number, Number]:
-        """Return places and orientations there (radians), the places so near to each other that no turn is missed."""
-        at = self.curve.path.samples
-        if self.known is None:
-            low, found, middle = at, self._at(at, 0)[0], (at[1:] + at[:-1]) / 2.0
-            there, speed = self._at(middle, 1)
-        else:
-            every, (angles, speeds) = self.known[0], self._turning(self.known[1])
-            low, found, middle, there, speed = every[::2], angles[:, ::2], every[1::2], angles[:, 1::2], speeds[:, 1::2]
-        known = [(low, found)]
-        low, high = (low[:-1], found[:, :-1]), (low[1:], found[:, 1:])
-        for k in range(HALVINGS):
-            if k:
-                middle = 0.5 * (low[0] + high[0])
-                there, speed = self._at(middle, 1)
-            known.append((middle, there))
-            halves = wrapped(there - low[1]), wrapped(high[1] - there)
-            uneven = np.abs(halves[0] + halves[1] - speed * (high[0] - low[0])) > EVEN
-            far = np.maximum(np.abs(halves[0]), np.abs(halves[1])) > FARTHEST / 2.0
-            # where an end is not assembled there is nothing to be followed
-            rough = np.any((uneven | far) & np.isfinite(halves[0] + halves[1]), axis=0)
-            if not rough.any():
-                break
-            parts = ((low, (middle, there)), ((middle, there), high))
-            low, high = (_joined([(s[rough], v[:, rough]) for s, v in side]) for side in zip(*parts, strict=True))
-        return _in_order(_joined(known))
-
-    def _at(self, at: Number, order: int) -> tuple[Number, Number]:
-        """Return the orientation at places (designs, places), and how fast it turns."""
-        designs = np.arange(self.curve.path.designs)[:, None]
-        found, speed = np.empty((len(designs), len(at))), np.zeros((len(designs), len(at)))
-        for start in range(0, len(at), BLOCK):
-            here = slice(start, start + BLOCK)
-            block = self.curve.run(self.curve.path.at(at[here]), order, at[here][None], designs, self.k + 1)
-            found[:, here], speed[:, here] = self._turning(block)
-        return found, speed
-
-    def _turning(self, block: Block) -> tuple[Number, Number]:
-        u = block.world[self.link].u.c
-        speed = cross(u[0], u[1]) if len(u) > 1 else 0.0
-        return np.broadcast_to(np.angle(u[0]), block.shape), np.broadcast_to(speed, block.shape)
-
-
-def _joined(parts: Sequence[tuple[Number, Number]]) -> tuple[Number, Number]:
-    return np.concatenate([s for s, _ in parts]), np.concatenate([v for _, v in parts], axis=1)
-
-
-def _in_order(samples: tuple[Number, Number]) -> tuple[Number, Number]:
-    order = np.argsort(samples[0])
-    return samples[0][order], samples[1][:, order]
-
-
-def _unwrapped(angles: Number, start: int, first: Number) -> Number:
-    """Make angles continuous, over gaps too, and at the sample `start` nearest to `first`."""
-    known = np.isfinite(angles)
-    last = np.maximum.accumulate(np.where(known, np.arange(angles.shape[1]), -1), axis=1)
-    held = np.take_along_axis(angles, np.where(last < 0, known.argmax(axis=1)[:, None], last), axis=1)
-    out = np.unwrap(np.nan_to_num(held), axis=1)
-    return out + whole_turns(np.nan_to_num(first - out[:, start]))[:, None]
-
-
-def recounted(solving_order: SolvingOrder, ways: tuple[Inputs, ...], pose: Inputs) -> tuple[Inputs, ...]:
-    """Return the motion and its approach path with drawn phases taken on.
-
-    They go on by the turns that drivers have made.
-
-    A drawing shows the angle of a driven link within half a turn; its driver may be any number of turns ahead.
-    """
-    pose, *counted = (_slides_counted(solving_order, way) for way in (pose, *ways))
-    drawn, rounds = _as_drawn(solving_order, pose)
-    driven = dict(_turns_at(solving_order, _counted_on(solving_order, drawn, rounds, {})))
-    turns = _with_stated_turns(solving_order, drawn, driven)
-    return tuple(
-        _blocks_counted(solving_order, _counted_on(solving_order, way, rounds, turns), turns) for way in counted
-    )
-
-
-def _slides_counted(solving_order: SolvingOrder, way: Inputs) -> Inputs:
-    """A way with driven blocks that count turns as they are drawn: phases of what gears with them are stated so."""
-    drawn, ends = solving_order.structure.mechanism.drawn_poses, dict(way.ends)
-    slides = [driven.pair for body in solving_order.structure.bodies for driven in body.driven]
-    for pair in (
-        pair for pair in slides if pair.is_simple and not pair.free_is_angle and drawn.keys() >= {*pair.members}
-    ):
-        guide, block = (as_column(drawn[k]).angle.c[0] for k in pair.members)
-        ends[pair.name] = _with_turns(pair, ends[pair.name], block - guide)
-    return replace(way, ends=ends)
-
-
-def _with_turns(slide: Drivable, ends: Ends, ahead: Number) -> Ends:
-    """Return the ends of a slide whose block is ahead of its guide by an angle, known to less than half a turn."""
-    turned = slide.placed(ends, constant(0.0)).angle.c[0]
-    return ends[0], ends[1]._replace(measure=np.round((ahead - turned) / TURN))
-
-
-def _blocks_counted(solving_order: SolvingOrder, way: Inputs, turns: Mapping[str, Number]) -> Inputs:
-    """A way with blocks that count turns as they are drawn: a slide tells their angle within half a turn only."""
-    drawn, ends = solving_order.structure.mechanism.drawn_poses, dict(way.ends)
-    for mounted in (mounted for solver in solving_order.solvers for mounted in solver.slid):
-        name, links, other = mounted.lower.name, mounted.lower.members, mounted.side.other
-        if not drawn.keys() >= set(links):
-            continue
-        guide, block = (
-            as_column(drawn[k]).angle.c[0] + TURN * (turns.get(k, 0.0) if k == other else 0.0) for k in links
-        )
-        ends[name] = _with_turns(mounted.lower, ends[name], block - guide)
-    return replace(way, ends=ends)
-
-
-def _as_drawn(solving_order: SolvingOrder, pose: Inputs) -> tuple[Inputs, dict[str, Number]]:
-    """Return the reference pose with drivers as drawn, in the turn they are in there; and that turn, by driven pair."""
-    rounds: dict[str, Number] = {}
-    for name, driven in solving_order.structure.driven.items():
-        value = drawn_value(solving_order, pose, name, solving_order.structure.mechanism.drawn_poses, {})
-        if value is None:
-            continue
-        if driven.pair.free_is_angle:
-            turns = np.round((pose.drives[name][0] - value) / TURN)
-            rounds[driven.pair.name] = turns * driven.pair.driven_by(driven.drive.link)
-            value = value + TURN * turns
-        pose = pose.driven({**pose.drives, name: (value,)})
-    return pose, rounds
-
-
-def _counted_on(
-    solving_order: SolvingOrder, way: Inputs, rounds: Mapping[str, Number], turns: Mapping[str, Number]
-) -> Inputs:
-    """A way with the phases of driven pairs taken on by their turns, those of others by the turns of their links."""
-    geometry = solving_order.structure.mechanism.geometry
-    ends = dict(way.ends)
-    for name, pair in solving_order.pairs.items():
-        ahead = tuple(turns.get(member, 0.0) for member in pair.members)
-        counting = as_turn_counting(pair)
-        if counting and name in rounds:
-            ends[name] = counting.with_driver_turns(ends[name], geometry, rounds[name])
-        elif counting and any(np.any(turn != 0.0) for turn in ahead):
-            ends[name] = counting.with_link_turns(ends[name], geometry, ahead)
-    return replace(way, ends=ends)
-
-
-def _with_stated_turns(solving_order: SolvingOrder, drawn: Inputs, turns: Mapping[str, Number]) -> Mapping[str, Number]:
-    """Return also by how many turns links are ahead of their drawn angle by stated phases, in the solving order."""
-    poses, found = solving_order.structure.mechanism.drawn_poses, dict(turns)
-    counting = [
-        pair
-        for pair in map(as_turn_counting, solving_order.pairs.values())
-        if pair and all(k in poses for k in pair.members)
-    ]
-    last = {link: solver.index for solver in solving_order.solvers for link in solver.group.links}
-    for solver in solving_order.solvers:
-        mine = [pair for pair in counting if max(last.get(k, -1) for k in pair.members) == solver.index]
-        for body in solver.group.bodies:
-            for pair in mine:
-                own = [i for i, k in enumerate(pair.members) if k in body.links]
-                if any(last.get(k, -1) == solver.index and k not in body.links for k in pair.members):
-                    continue
-                angles = tuple(as_column(poses[k]).angle.c[0] + TURN * found.get(k, 0.0) for k in pair.members)
-                ahead = pair.stated_turns(drawn.ends[pair.name], angles, own)
-                if np.any(ahead != 0.0):
-                    found |= {link: found.get(link, 0.0) + ahead for link in body.links}
-                    break
-    return found
-
-
-def _turns_at(solving_order: SolvingOrder, drawn: Inputs) -> Iterator[tuple[str, Number]]:
-    """By how many turns each driven link is ahead of its drawn angle, relative to the base of its composite link."""
-    poses = solving_order.structure.mechanism.drawn_poses
-    start = solving_order.start(drawn.ends, drawn.series(0), 0, (drawn.designs, 1))
-    for body in solving_order.structure.bodies:
-        base = body.links[0]
-        for link in (
-            link for link in body.links[1:] if link in poses and base in poses and link in solving_order.turning
-        ):
-            pose = start.world.get(link) or start.local[link]
-            yield link, np.round(_ahead_of_drawing(poses, base, link, pose) / TURN)

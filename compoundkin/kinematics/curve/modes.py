@@ -15,8 +15,9 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series, as_series, constant
 from compoundkin.kinematics.block import Block, size_in
 from compoundkin.kinematics.configuration import BETWEEN, ONLY, Configuration, label
+from compoundkin.kinematics.curve.closed_states import COMPARED, ClosedStates, every_state
 from compoundkin.kinematics.curve.driver_path import DriverPath, first_of
-from compoundkin.kinematics.curve.group_paths import COMPARED, ClosedStates, Followed, every_state
+from compoundkin.kinematics.curve.group_paths import Followed
 from compoundkin.kinematics.driver_values import fit
 from compoundkin.kinematics.groups import GroupSolver, equations_of
 from compoundkin.kinematics.solving_order import SolvingOrder, residual

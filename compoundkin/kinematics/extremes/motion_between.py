@@ -15,7 +15,7 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, poses_at, with_poses
-from compoundkin.kinematics.curve.change_points import NEARLY, solved_near
+from compoundkin.kinematics.curve.double_roots import NEARLY, solved_near
 from compoundkin.kinematics.driver_values import Inputs, fit, mapped
 from compoundkin.kinematics.motion import LinkMotion, Motion, PairMotion, PointMotion
 from compoundkin.model.attributes import HIGHEST_ORDER
