@@ -12,21 +12,18 @@ are those of `compoundkin new` and of specifications such as "four-bar:60,20,50,
 
 from __future__ import annotations
 
+from compoundkin.synthesis.four_bars import four_bar, inverted_slider_crank, quick_return, slider_crank
 from compoundkin.synthesis.linkages import (
     cam_follower,
     five_bar,
-    four_bar,
     geared_five_bar,
     geneva,
-    inverted_slider_crank,
     planetary,
-    quick_return,
     scissor,
     scotch_yoke,
-    six_bar,
-    slider_crank,
     toggle,
 )
+from compoundkin.synthesis.six_bars import six_bar
 
 __all__ = [
     "cam_follower",

@@ -47,13 +47,13 @@ def test_a_verb_that_others_have_leads_to_ours(run: Run, said: str, meant: str) 
 
 def test_every_word_of_others_leads_to_a_word_that_there_is() -> None:
     from compoundkin.files.shipped_mechanisms import shipped
-    from compoundkin.synthesis.linkages import kinds
+    from compoundkin.synthesis.linkages import KINDS
 
     lost = [other for other, ours in OTHER_WORDS.items() if not ours or other != other.lower()]
     assert not lost
     verbs = {word for ours in OTHER_WORDS.values() for word in ours if word in VERBS}
     assert {"animate", "exercise", "forces", "size", "study", "tolerance"} <= verbs
-    named = {kind.name for kind in kinds()} | {*shipped()}
+    named = {*KINDS, *shipped()}
     assert {one for ours in OTHER_WORDS.values() for one in ours if "-" in one} <= named
 
 

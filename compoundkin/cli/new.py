@@ -176,10 +176,10 @@ def command(words: tuple[str, ...], path: str | None, listed: bool, source: str 
 
 def linkage_list() -> str:
     """Return the linkages with their parameters and an example of each."""
-    from compoundkin.synthesis.linkages import kinds
+    from compoundkin.synthesis.linkages import KINDS
 
     lines = []
-    for kind in kinds():
+    for kind in KINDS.values():
         lines += [kind.name, f"  {kind.summary}", f"  compoundkin new {kind.name} {kind.example}"]
         wide = max(len(one.name) for one in kind.parameters)
         for one in kind.parameters:
@@ -194,9 +194,9 @@ def linkage_file(name: str, given: tuple[str, ...], target: Path) -> str:
     """Return the text of the file of a linkage, with what its numbers mean. Raises InvalidInput, UnknownName."""
     from compoundkin.files import dumps
     from compoundkin.files.shipped_mechanisms import titles
-    from compoundkin.synthesis.linkages import kind_named, kinds
+    from compoundkin.synthesis.linkages import KINDS, kind_named
 
-    if not nearest(name, [one.name for one in kinds()]) and (found := titles(name)):
+    if not nearest(name, list(KINDS)) and (found := titles(name)):
         remedy = f"the catalog has {', '.join([*found][:6])}: compoundkin new mine.toml --from {next(iter(found))}"
         raise UnknownName(Problem(name, "there is no such linkage", remedy))
     kind = kind_named(name)

@@ -21,10 +21,11 @@ from compoundkin.kinematics.groups import GroupSolver, solver_of
 from compoundkin.kinematics.groups.pair_sides import Reason, Words, reason_text, spot
 from compoundkin.model.definition import matching_pairs, pair_by_name
 from compoundkin.model.geometry import Geometry
+from compoundkin.model.load_validation import load_designs
+from compoundkin.model.outline_validation import outline_designs
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import DimensionFit, Ends, as_turn_counting, constraint_scales
 from compoundkin.model.pairs.travel_limits import TravelLimited, as_travel_limited, bounds_name
-from compoundkin.model.validation import load_designs, outline_designs
 from compoundkin.structure.four_bars import FourBarLoops, four_bar_loops
 from compoundkin.structure.kinematic_structure import Structure
 from compoundkin.structure.mobility_count import DrivenPair

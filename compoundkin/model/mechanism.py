@@ -24,19 +24,14 @@ from compoundkin.model.attributes import CATALOGUE, DERIVED
 from compoundkin.model.definition import MechanismDefinition, MechanismNames
 from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode
 from compoundkin.model.geometry import FRAME, Geometry, link_from_drawing, pose_from_points, real
+from compoundkin.model.load_validation import load_problems, load_warnings
+from compoundkin.model.outline_validation import crossed_polygons, outline_problems
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import DrawnPair, Ends, as_orienting, as_turn_counting, misfit_problems
 from compoundkin.model.pairs.profile_contact import as_profile_contact
 from compoundkin.model.prescribed_motion import PrescribedMotion
 from compoundkin.model.units import checked_units
-from compoundkin.model.validation import (
-    crossed_polygons,
-    definition_problems,
-    load_problems,
-    load_warnings,
-    missing_places,
-    outline_problems,
-)
+from compoundkin.model.validation import definition_problems, missing_places
 
 # The attributes of a mechanism beside its items.
 _ABOUT = ("title", "source", "description", "outputs", "time", "unit", "units")

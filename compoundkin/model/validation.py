@@ -1,29 +1,21 @@
-"""Validation of a mechanism: names, numbers, masses, loads, outlines. No problem hides another."""
+"""Validation of links, pairs, drivers and expectations: names, numbers, shapes. No problem hides another."""
 
 from __future__ import annotations
 
 import cmath
 from collections.abc import Iterable, Iterator, Mapping
 from functools import reduce
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
-from compoundkin.base.arrays import LONGEST, SHORTEST, Number, cross
-from compoundkin.base.errors import LikelySlip, Problem, suggestion, warn
+from compoundkin.base.arrays import LONGEST, SHORTEST, Number
+from compoundkin.base.errors import Problem, suggestion
 from compoundkin.model.attributes import RATES, TIME, VALUE, driver_and_rate
 from compoundkin.model.definition import CYLINDERS, DRIVES, MechanismDefinition
 from compoundkin.model.elements import Drive, Item, Link
-from compoundkin.model.fields import Key, NameWording, name_problems
+from compoundkin.model.fields import Key
 from compoundkin.model.geometry import FRAME
-from compoundkin.model.loads.amounts import RATE, tables_of
-from compoundkin.model.loads.contract import Load, NamedParts
-from compoundkin.model.loads.friction import Friction
-from compoundkin.model.loads.gravity import Gravity
-from compoundkin.model.loads.mass import Mass, uniform_body
-from compoundkin.model.loads.motor import rotors
-from compoundkin.model.loads.pretension import Pretension
-from compoundkin.model.outlines import OUTLINES, LinkOutline
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.cylinder import Cylinder
 from compoundkin.model.prescribed_motion import PrescribedMotion
@@ -96,10 +88,11 @@ def _named_elements(mechanism: MechanismDefinition) -> Iterator[tuple[str, str, 
 
 def is_name(name: str) -> bool:
     """Return whether a text may be a name."""
-    return bool(name) and name == name.strip() and _is_printable(name)
+    return bool(name) and name == name.strip() and is_printable(name)
 
 
-def _is_printable(name: str) -> bool:
+def is_printable(name: str) -> bool:
+    """Return whether a text is printable and has no dots and commas."""
     return name.isprintable() and not set(name) & set(".,")
 
 
@@ -401,10 +394,10 @@ def shape_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
     for place, drive in placed_drives(mechanism):
         numbers_of_drive = ((k, getattr(drive, k)) for k in DRIVER_NUMBERS)
         shapes += [(f"{place}.{k}", np.shape(value)) for k, value in numbers_of_drive if value is not None]
-    yield from _broadcast_problems(shapes)
+    yield from broadcast_problems(shapes)
 
 
-def _broadcast_problems(shapes: Iterable[tuple[str, tuple[int, ...]]]) -> Iterator[Problem]:
+def broadcast_problems(shapes: Iterable[tuple[str, tuple[int, ...]]]) -> Iterator[Problem]:
     """Find arrays, by their places and shapes, that do not broadcast with those before them."""
     total: tuple[int, ...] = ()
     for where, shape in shapes:
@@ -415,7 +408,7 @@ def _broadcast_problems(shapes: Iterable[tuple[str, tuple[int, ...]]]) -> Iterat
             yield Problem(where, what, "give a new axis to designs: the last axis is the motion")
 
 
-def _point_shapes(mechanism: MechanismDefinition) -> list[tuple[str, tuple[int, ...]]]:
+def point_shapes(mechanism: MechanismDefinition) -> list[tuple[str, tuple[int, ...]]]:
     """Return the shapes of points that are arrays, with their places."""
     return [(f"links.{name}.points.{letter}", np.shape(place)) for name, link in mechanism.links.items()
             for letter, place in link.points.items() if isinstance(place, np.ndarray)]  # fmt: skip
@@ -431,299 +424,3 @@ def missing_places(unplaced: Mapping[str, tuple[str, ...]]) -> Iterator[Problem]
         what += f" of {name!r} {'has' if len(letters) == 1 else 'have'} no place"
         remedy = f"give all coordinates as {letters[0]} = (x, y), or a place in the drawing; the structure needs none"
         yield Problem(f"links.{name}.points", what, "" if number else remedy)
-
-
-GRAVITY = "gravity"
-# An inertia below this part of that of a uniform bar or plate through the link's points is most often one in another
-# unit: kg m^2 among millimetres are a millionth, kg cm^2 a hundredth.
-SMALL_INERTIA = 1e-3
-# What of a load holds numbers, and may be an array over the motion.
-_LOAD_NUMBERS = ("length", "amount", "planar", "point", "spot", "coordinate")
-MassOrLoad: TypeAlias = Mass | Load | Friction | Pretension
-
-
-def load_problems(mechanism: MechanismDefinition, names: NamedParts, has_units: bool) -> list[Problem]:
-    """Return the problems of masses and loads, which need units."""
-    found = [] if has_units else list(_without_units(mechanism))
-    for where, item in placed_loads(mechanism):
-        numbers = list(_invalid_load_numbers(where, item))
-        found += numbers
-        if not numbers:
-            # a load on a pin is one on a link of it
-            whole = item.completed(names) if isinstance(item, Load) else item
-            found += whole.problems(names, where)
-            found += _unknown_tables(where, item, names)
-    found += _rotors_without_masses(mechanism, names)
-    return [*found, *_repeated_loads(mechanism, names), *_gravity_problems(mechanism), *_load_shape_problems(mechanism)]
-
-
-def _rotors_without_masses(mechanism: MechanismDefinition, names: NamedParts) -> Iterator[Problem]:
-    """Find rotors with an inertia on links without a mass, in whose inertia they would be."""
-    heavy = {item.link for item in mechanism.items if isinstance(item, Mass)}
-    for where, item in placed_loads(mechanism):
-        for link, _ in rotors([item.completed(names)] if isinstance(item, Load) else []):
-            if link and link not in heavy:
-                remedy = f'write mass("{link}", ...) too, or leave the inertia out'
-                yield Problem(f"{where}.inertia", f"{link!r}, which it turns, has no mass", remedy)
-
-
-def placed_loads(mechanism: MechanismDefinition) -> Iterator[tuple[str, MassOrLoad]]:
-    """Yield each mass and load with its place in a file."""
-    count: dict[str, int] = {}
-    for item in mechanism.items:
-        if isinstance(item, Mass | Load | Friction | Pretension):
-            index = count.get(item.table, 0)
-            count[item.table] = index + 1
-            yield f"{item.table}[{index}]", item
-
-
-def _without_units(mechanism: MechanismDefinition) -> Iterator[Problem]:
-    """Find masses and forces of a mechanism without units."""
-    first = next((item for _, item in placed_loads(mechanism)), None)
-    if first is not None:
-        what = f"it has a {first.title}, and masses and forces need units"
-        yield Problem("units", what, 'write units={"length": "mm", "mass": "kg", "force": "N"}')
-
-
-def _load_numbers(item: MassOrLoad) -> Iterator[tuple[str, Any]]:
-    """Yield the numbers and arrays that an item holds, by their keys."""
-    for key in item.keys:
-        held = getattr(item, key.name)
-        if key.kind in _LOAD_NUMBERS and not isinstance(held, str) and held is not None:
-            for part in held if isinstance(held, tuple) else (held,):
-                if isinstance(part, int | float | complex | np.ndarray):
-                    yield key.name, part
-
-
-def load_designs(mechanism: MechanismDefinition) -> Iterator[tuple[str, Any]]:
-    """Yield the arrays of masses and loads over designs with their places.
-
-    The motion's axis is left out.
-    """
-    for where, item in placed_loads(mechanism):
-        for key, value in _load_numbers(item):
-            if np.ndim(value) > 1:
-                yield f"{where}.{key}", value[..., :1]
-
-
-def _invalid_load_numbers(where: str, item: MassOrLoad) -> Iterator[Problem]:
-    """Find values that are empty or not finite, and a mass that would change along the motion."""
-    for key, value in _load_numbers(item):
-        if not is_finite(value):
-            yield Problem(f"{where}.{key}", "the value is empty or not finite")
-        elif isinstance(item, Mass | Friction) and np.ndim(value) and np.shape(value)[-1] > 1:
-            what = f"it holds {np.shape(value)[-1]} numbers along the motion, in which it cannot change"
-            yield Problem(f"{where}.{key}", what, "give one number, or one for each design: [[1.0], [2.0]]")
-    for needed in item.keys:
-        if needed.required and needed.kind in _LOAD_NUMBERS and getattr(item, needed.name) is None:
-            yield Problem(f"{where}.{needed.name}", "it is missing", needed.doc)
-
-
-def _unknown_tables(where: str, item: MassOrLoad, names: NamedParts) -> Iterator[Problem]:
-    """Find tables over unknown coordinates."""
-    for key in item.amounts if isinstance(item, Load) else ():
-        own = (TIME, RATE) if isinstance(item, Load) and item.has_rate else (TIME,)
-        for table in tables_of(getattr(item, key)):
-            if table.over not in ("", *own) and names.coordinate(table.over) is None:
-                what = f"there is no pair, pin or driver {table.over!r}"
-                yield Problem(f"{where}.{key}.over", what, suggestion(table.over, [*own, *names.pairs]))
-
-
-def _repeated_loads(mechanism: MechanismDefinition, names: NamedParts) -> Iterator[Problem]:
-    """Find two masses of a link, two frictions of a pair by whichever name, and two loads of one name."""
-    seen = set[tuple[str, object]]()
-    for where, item in placed_loads(mechanism):
-        kind = "load" if isinstance(item, Load) else item.title
-        if isinstance(item, Load) and not _is_printable(item.name):
-            yield Problem(f"{where}.name", f"{item.name!r} is not a name", PRINTABLE)
-        if (kind, meant := _load_identity(item, names)) in seen and isinstance(item, Load):
-            yield Problem(where, f"the name {item.name!r} is used twice", "names are unique: give one of them a name")
-        elif (kind, meant) in seen:
-            yield Problem(where, f"{item.name!r} has a {kind} already", "leave one of them out, or add them up")
-        seen.add((kind, meant))
-
-
-def _load_identity(item: MassOrLoad, names: NamedParts) -> object:
-    """Return what may have one such item only: a name, or a pair by its links and points."""
-    pair = names.pair(item.pair) if isinstance(item, Friction | Pretension) else None
-    return item.name if pair is None else (pair.title, pair.letters, frozenset(pair.members))
-
-
-def _gravity_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
-    given = [item.vector for item in mechanism.items if isinstance(item, Gravity)]
-    if len(given) > 1:
-        yield Problem(GRAVITY, "it is given twice", "leave one of them out")
-    for value in given:
-        if not is_finite(value):
-            yield Problem(GRAVITY, "the value is empty or not finite")
-
-
-def _load_shape_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
-    """Find arrays of loads that do not broadcast with each other and with the points of links."""
-    shapes = [(f"{where}.{key}", np.shape(value)) for where, item in placed_loads(mechanism)
-            for key, value in _load_numbers(item)]  # fmt: skip
-    if any(shape for _, shape in shapes):
-        yield from _broadcast_problems([*_point_shapes(mechanism), *shapes])
-
-
-def load_warnings(mechanism: Any) -> None:
-    """Warn of inertias that are far too small for their links."""
-    stated = [item for item in mechanism.items if isinstance(item, Mass) and item.inertia is not None]
-    for item in stated if not mechanism.unplaced else ():
-        points = list(mechanism.geometry.points[item.link].values())
-        uniform = np.asarray(mechanism.masses[item.link].mass * uniform_body(points).inertia)
-        if np.any((np.asarray(item.inertia) > 0.0) & (item.inertia < SMALL_INERTIA * uniform)):
-            part = float(np.min(item.inertia / uniform))
-            what = f"masses.{item.link}.inertia: it is {part:.2g} of that of a uniform body through the link's points"
-            warn(f"{what}; it is in {mechanism.units.mass} {mechanism.units.length}^2", LikelySlip)
-
-
-_OUTLINE_LENGTHS = ("width", "radius", "pin")
-# How many places each list needs.
-_FEWEST_CORNERS = {"through": 2, "polygon": 3}
-
-
-def outline_problems(mechanism: MechanismDefinition, names: NamedParts) -> list[Problem]:
-    """Return the problems of outlines."""
-    found: list[Problem] = []
-    for where, item in placed_outlines(mechanism):
-        numbers = list(_invalid_outline_numbers(where, item))
-        found += numbers or [
-            *_outline_reference_problems(where, item, names),
-            *_outline_place_problems(where, item, mechanism),
-        ]
-    return [*found, *_repeated_outlines(mechanism), *_outline_shape_problems(mechanism)]
-
-
-def placed_outlines(mechanism: MechanismDefinition) -> Iterator[tuple[str, LinkOutline]]:
-    """Yield each outline with its place in a file."""
-    items = [item for item in mechanism.items if isinstance(item, LinkOutline)]
-    yield from ((f"{OUTLINES}[{index}]", item) for index, item in enumerate(items))
-
-
-def outline_designs(mechanism: MechanismDefinition) -> Iterator[tuple[str, Number]]:
-    """Yield the arrays of outlines over designs with their places."""
-    for where, item in placed_outlines(mechanism):
-        yield from ((f"{where}.{key}", value) for key, value in _outline_numbers(item) if np.ndim(value) > 1)
-
-
-def _outline_numbers(item: LinkOutline) -> Iterator[tuple[str, Any]]:
-    """Yield the numbers and places that an outline holds, by their keys."""
-    yield from ((key, getattr(item, key)) for key in _OUTLINE_LENGTHS if getattr(item, key) is not None)
-    if item.at is not None and not isinstance(item.at, str):
-        yield "at", item.at
-    for key in _FEWEST_CORNERS:
-        yield from ((f"{key}[{k}]", one) for k, one in enumerate(getattr(item, key)) if not isinstance(one, str))
-
-
-def _invalid_outline_numbers(where: str, item: LinkOutline) -> Iterator[Problem]:
-    """Find values that are empty, not finite, not positive, or that would change along the motion."""
-    for key, value in _outline_numbers(item):
-        if not is_finite(value):
-            yield Problem(f"{where}.{key}", "the value is empty or not finite")
-        elif is_too_great(value):
-            yield Problem(f"{where}.{key}", "it is too great", "choose another unit")
-        elif np.ndim(value) and np.shape(value)[-1] > 1:
-            what = f"it holds {np.shape(value)[-1]} numbers along the motion, in which an outline cannot change"
-            yield Problem(f"{where}.{key}", what, "give one number, or one for each design: [[8], [10]]")
-        elif key in _OUTLINE_LENGTHS and not np.all(np.asarray(value) > 0.0):
-            yield Problem(f"{where}.{key}", f"a {key} is above zero, not {float(np.min(value)):g}")
-
-
-def _outline_reference_problems(where: str, item: LinkOutline, names: NamedParts) -> Iterator[Problem]:
-    """Find unknown links and points, and missing dimensions."""
-    yield from name_problems(item, names.letters, where, NameWording())
-    letters = names.letters.get(item.link, ())
-    for key, fewest in _FEWEST_CORNERS.items():
-        given = getattr(item, key)
-        if given and len(given) < fewest:
-            yield Problem(f"{where}.{key}", f"{len(given)} places are too few", f"give {fewest} or more")
-        for k, one in enumerate(given if letters else ()):
-            if isinstance(one, str) and one not in letters:
-                what = f"link {item.link!r} has no point {one!r}"
-                yield Problem(f"{where}.{key}[{k}]", what, suggestion(one, list(letters)))
-    if not item.polygon and all(getattr(item, key) is None for key in _OUTLINE_LENGTHS):
-        yield Problem(where, "it says no shape", "give a width, a radius, a polygon or the diameter of pins")
-    if item.through and item.width is None:
-        yield Problem(f"{where}.width", "bars through points need a width", "give the width")
-
-
-def _outline_place_problems(where: str, item: LinkOutline, mechanism: MechanismDefinition) -> Iterator[Problem]:
-    """Find a disc without a centre, a centre without a disc, and a pin that joins nothing."""
-    letters = mechanism.links[item.link].letters if item.link in mechanism.links else ()
-    choice = f"name a point: {', '.join(letters)}"
-    if item.radius is not None and item.at is None:
-        yield Problem(f"{where}.at", "a disc needs its middle", choice)
-    if item.at is not None and item.radius is None and item.pin is None:
-        yield Problem(f"{where}.at", "it is the middle of no disc and of no pin", "give a radius, or leave it out")
-    if item.pin is None or not letters:
-        return
-    joined = [letter for letter in letters if is_joined(mechanism, letter)]
-    if item.at is not None and not isinstance(item.at, str):
-        yield Problem(f"{where}.at", "a pin is at a point", choice)
-    elif not joined or (item.at in letters and item.at not in joined):
-        what = f"no pin joins {item.link!r} to another link{f' at {item.at}' if item.at else ''}"
-        yield Problem(f"{where}.pin", what, "leave it out, or write a disc with a radius")
-
-
-def is_joined(mechanism: MechanismDefinition, letter: str) -> bool:
-    """Tell whether a pin or another pair joins links at a point."""
-    return letter in mechanism.real_pins or any(letter in pair.letters for pair in mechanism.real_pairs)
-
-
-def _repeated_outlines(mechanism: MechanismDefinition) -> Iterator[Problem]:
-    seen = set[str]()
-    for where, item in placed_outlines(mechanism):
-        if not _is_printable(item.name):
-            yield Problem(f"{where}.name", f"{item.name!r} is not a name", PRINTABLE)
-        if item.name in seen:
-            yield Problem(where, f"the name {item.name!r} is used twice", "give one of both outlines a name")
-        seen.add(item.name)
-
-
-def _outline_shape_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
-    """Find arrays of outlines that do not broadcast with each other and with the points of links."""
-    shapes = [(where, np.shape(value)) for where, value in outline_designs(mechanism)]
-    if shapes:
-        yield from _broadcast_problems([*_point_shapes(mechanism), *shapes])
-
-
-def crossed_polygons(mechanism: Any) -> Iterator[Problem]:
-    """Find polygons that cross themselves, or that have no area, in any design."""
-    for where, item in placed_outlines(mechanism):
-        points = mechanism.geometry.points.get(item.link, {})
-        if not item.polygon:
-            continue
-        corners = [points[one] if isinstance(one, str) else one for one in item.polygon]
-        if _crosses(np.stack(np.broadcast_arrays(*corners))):
-            yield Problem(
-                f"{where}.polygon", "its sides cross, touch, or have no length", "give its corners in order all around"
-            )
-
-
-def _crosses(corners: Number) -> bool:
-    """Return whether two sides of a polygon (corners, ...) share a point other than their common corner."""
-    count = len(corners)
-    start, stop = corners, np.roll(corners, -1, axis=0)
-    one, other = np.triu_indices(count, 1)
-    apart = (other - one > 1) & (other - one < count - 1)
-    sides: Number = np.abs(stop - start)
-    if np.any(sides == 0.0):
-        return True
-    back = np.conjugate(np.roll(start, 1, axis=0) - start) * (stop - start)
-    # a corner at which the line runs back over itself
-    if np.any((back.imag == 0.0) & (back.real > 0.0)):
-        return True
-    a, b, c, d = start[one[apart]], stop[one[apart]], start[other[apart]], stop[other[apart]]
-    split = cross(b - a, c - a) * cross(b - a, d - a) <= 0.0
-    return bool(np.any(split & (cross(d - c, a - c) * cross(d - c, b - c) <= 0.0) & _boxes_overlap(a, b, c, d)))
-
-
-def _boxes_overlap(a: Number, b: Number, c: Number, d: Number) -> Number:
-    """Return which sides have bounding boxes that meet; for sides on one line the products above vanish."""
-    return (
-        (np.minimum(a.real, b.real) <= np.maximum(c.real, d.real))
-        & (np.minimum(c.real, d.real) <= np.maximum(a.real, b.real))
-        & (np.minimum(a.imag, b.imag) <= np.maximum(c.imag, d.imag))
-        & (np.minimum(c.imag, d.imag) <= np.maximum(a.imag, b.imag))
-    )

@@ -16,7 +16,7 @@ import numpy as np
 
 from compoundkin.base.arguments import is_real
 from compoundkin.base.display import short_repr
-from compoundkin.base.errors import InvalidInput, Problem, suggestion
+from compoundkin.base.errors import InvalidInput, Problem, plain_word, suggestion
 from compoundkin.model.geometry import deg
 from compoundkin.model.laws.cam_laws import LAWS
 from compoundkin.model.mechanism import Mechanism
@@ -36,6 +36,9 @@ WORDS: Mapping[str, tuple[str, ...]] = {
     "ArmOrSun": ("arm", "sun"),
     "RiseLaw": tuple(name for name in LAWS if name not in ("dwell", "constant-velocity")),
 }
+# What parameters that most linkages have mean.
+UNIT = "The unit of lengths, any word."
+CLOSURE = "Which of two ways to assemble it."
 SixBar: TypeAlias = Literal["Watt I", "Watt II", "Stephenson I", "Stephenson II", "Stephenson III"]
 QuickReturn: TypeAlias = Literal["crank-shaper", "Whitworth"]
 Follower: TypeAlias = Literal["knife", "roller", "flat"]
@@ -70,10 +73,10 @@ class LinkageParameter:
     def value(self, text: str) -> Any:
         """Return the value that a text means, angles in degrees. Raises InvalidInput."""
         if self.words:
-            near = {_plain(word): word for word in self.words}
-            if _plain(text) not in near:
+            near = {plain_word(word): word for word in self.words}
+            if plain_word(text) not in near:
                 raise wrong(self.name, f"{text!r} is none of its words", suggestion(text, list(self.words)))
-            return near[_plain(text)]
+            return near[plain_word(text)]
         if self.kind == "str":
             return text
         try:
@@ -140,11 +143,16 @@ class LinkageKind:
         return " ".join(one.name if one.is_required else f"[{one.name}]" for one in self.parameters)
 
 
-LINKAGES: dict[str, LinkageKind] = {}
+_DECLARED: dict[str, LinkageKind] = {}
+
+
+def kind_of(function: Callable[..., Mechanism]) -> LinkageKind:
+    """Return the kind of linkage that a function has been declared to make."""
+    return _DECLARED[function.__name__]
 
 
 def linkage(example: str, **meanings: str) -> Callable[[Callable[..., Mechanism]], Callable[..., Mechanism]]:
-    """Return a decorator that lists a function among the linkages, with the meaning of each of its parameters."""
+    """Return a decorator that declares a kind of linkage by its function and the meaning of each of its parameters."""
 
     def listed(function: Callable[..., Mechanism]) -> Callable[..., Mechanism]:
         parameters = tuple(
@@ -169,7 +177,8 @@ def linkage(example: str, **meanings: str) -> Callable[[Callable[..., Mechanism]
 
         name = function.__name__.replace("_", "-")
         summary = (function.__doc__ or "").partition("\n")[0].removeprefix("Return a ").removeprefix("Return an ")
-        LINKAGES[name] = LinkageKind(name, summary.removeprefix("Return the "), parameters, example, checking)
+        summary = summary.removeprefix("Return the ")
+        _DECLARED[function.__name__] = LinkageKind(name, summary, parameters, example, checking)
         return checking
 
     return listed
@@ -218,7 +227,3 @@ def polar_place(name: str, value: Any) -> complex:
 def wrong(where: str, what: str, remedy: str = "") -> InvalidInput:
     """Return the error for a parameter."""
     return InvalidInput(Problem(where, what, remedy))
-
-
-def _plain(word: str) -> str:
-    return "".join(word.lower().replace("_", " ").replace("-", " ").split())

@@ -16,9 +16,8 @@ from hypothesis import strategies as st
 import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.errors import InvalidInput, UnknownName
-from compoundkin.synthesis.linkages import kinds, linkage_of
+from compoundkin.synthesis.linkages import KINDS, linkage_of
 
-KINDS = {kind.name: kind for kind in kinds()}
 DEG = np.pi / 180.0
 make: Any = ck.linkages
 
