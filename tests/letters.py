@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import compoundkin as ck
-from compoundkin.dimensional.coupler_atlas import mean_distance
+from compoundkin.dimensional.curve_likeness import mean_distance
 from compoundkin.files.mechanism_files import written_text
 from compoundkin.files.writer import document
 

@@ -138,6 +138,7 @@ OBTAINED_BY: Mapping[str, str] = MappingProxyType(
         "Program": "laws.program() makes one",
         "ProgramSegment": "laws.rise(), laws.fall() and laws.dwell() make them",
         "ForcePort": "write advantage.ForcePort(link, point, angle) or advantage.TorquePort(link)",
+        "DesignAtlas": "coupler_atlas() makes one",
         "MultiGraph": "decompose(mechanism).graph is one",
     }
 )
@@ -273,7 +274,11 @@ class Annotation:
             return self.form(meant)
         if getattr(meant, "_is_protocol", False):
             members = [key for key in vars(meant) if not key.startswith("_")]
-            return ArgumentType(lambda v: all(hasattr(v, key) for key in members), "motion", OBTAINED_BY["Motion"])
+            # what has a motion's poses is called one
+            called = name if name in OBTAINED_BY else "Motion"
+            return ArgumentType(
+                lambda v: all(hasattr(v, key) for key in members), in_words(called), OBTAINED_BY[called]
+            )
         return ArgumentType(partial(is_called, word=in_words(name)), in_words(name), OBTAINED_BY.get(name, ""))
 
     def _table(self, node: ast.expr) -> ArgumentType:

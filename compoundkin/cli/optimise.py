@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator, Sequence
 from math import radians
 from typing import TYPE_CHECKING, Any
@@ -12,14 +13,20 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.suffixes import file_format, suffix_for, suffix_of
 from compoundkin.cli.drive_options import explain_gaps, motion_options, read_assembly_modes, split_names
 from compoundkin.cli.file_options import mechanism_argument, put_report, report_or_mechanism_options, solvable_structure
-from compoundkin.cli.shell import counting, say
+from compoundkin.cli.shell import counting, say, working
 
 if TYPE_CHECKING:
+    from compoundkin.dimensional.coupler_atlas import CouplerAtlas
+    from compoundkin.model.mechanism import Mechanism
     from compoundkin.structure import Structure
     from compoundkin.studies.optimisation.optimum import Optimum
 
 RANGES = "write NAME=LOW:HIGH, lengths or degrees: crank.B.x=10:30"
+ATLAS = "write how many designs are made for it, --atlas 20000, or a folder that has one"
 BOUNDS = "write FIGURE=VALUE: ram.stroke=45, rod.transmission_angle.least=40"
+
+# Designs of an atlas that is made for one search, at most: they take a third of a gigabyte.
+MOST_DESIGNS = 1_000_000
 
 
 def _repeated(flag: str, name: str, metavar: str, text: str) -> Callable[[Any], Any]:
@@ -35,6 +42,8 @@ Examples:
       --target rocker.angle.stroke=60 -o better.toml
   compoundkin optimise six-bar --free crank.D.x=10:18,bar.G.x=50:60
       --greatest G.x.stroke -o better.html
+  compoundkin optimise crank-rocker --free crank.B.x=1:4,coupler.C.x=3:8
+      --target rocker.angle.stroke=70 --atlas 20000
 """
 )
 @mechanism_argument
@@ -47,6 +56,11 @@ Examples:
 @click.option("--full-turn", is_flag=True, help="The driver must be able to turn fully.")
 @click.option("--assembled", is_flag=True, help="It must be assembled all along the motion, in one configuration.")
 @click.option("--starts", type=click.IntRange(min=1), default=64, show_default=True, help="How many searches begin.")
+@click.option(
+    "--atlas",
+    metavar="NUMBER|FOLDER",
+    help="Begin at designs that turn fully, of an atlas of coupler curves: of so many, or of a folder.",
+)
 @click.option("--seed", type=int, default=0, show_default=True, help="Makes the search repeatable.")
 @motion_options
 @report_or_mechanism_options
@@ -92,13 +106,41 @@ def search(structure: Structure, options: dict[str, Any]) -> Optimum:
     constraints += [full_turn()] if options["full_turn"] else []
     constraints += [assembles()] if options["assembled"] else []
     rates: dict[str, Any] = {rate: read_rates(structure, f"--{rate}", options[f"{rate}s"]) for rate in RATES[:2]}
+    atlas = read_atlas(structure.mechanism, options["atlas"])
     with counting("searching", "designs") as progress:
         return optimise(
             structure.mechanism, dict(read_ranges(structure, options["free"])), sum(aims[1:], aims[0]), constraints,
             values=read_driver_values(structure, options) or None, time=read_times(options["time"]),
             modes=read_assembly_modes(structure, options["modes"]) or None,
-            starts=options["starts"], seed=options["seed"], progress=progress, **rates,
+            starts=options["starts"], atlas=atlas, seed=options["seed"], progress=progress, **rates,
         )  # fmt: skip
+
+
+def read_atlas(mechanism: Mechanism, given: str | None) -> CouplerAtlas | None:
+    """Return the atlas of an option: so many designs of as many links as the mechanism, or a folder's.
+
+    Raises InvalidInput for a mechanism of other numbers of links than an atlas has, and where a folder has none.
+    """
+    if given is None:
+        return None
+    from compoundkin.dimensional.coupler_atlas import CouplerAtlas, coupler_atlas
+    from compoundkin.dimensional.curve_chains import curve_chains
+
+    where = f"--atlas {given}"
+    if not given.isdecimal():
+        if not os.path.isdir(given):
+            raise InvalidInput(Problem(where, "there is no such folder", ATLAS))
+        return CouplerAtlas.open(given)
+    links = next((most for most in (4, 6, 8) if len(mechanism.links) <= most), None)
+    if links is None:
+        what = f"{mechanism.title} has {len(mechanism.links)} links"
+        raise InvalidInput(Problem(where, what, "chains of an atlas have four to eight: leave it out"))
+    least, count = len(curve_chains(links)), int(given)
+    if not least <= count <= MOST_DESIGNS:
+        what = f"no atlas of {links} links is made for a search with so many designs"
+        raise InvalidInput(Problem(where, what, f"{least} to {MOST_DESIGNS}; more are kept in a folder"))
+    with working("making an atlas"):
+        return coupler_atlas(links, count)
 
 
 def read_ranges(structure: Structure, given: Sequence[str]) -> Iterator[tuple[str, tuple[float, float]]]:

@@ -36,11 +36,13 @@ def designs_for(chains: Iterable[ChainDesigns], mechanism: Mechanism, ranges: Ra
     mechanism is no chain of the atlas.
     """
     graph = _graph(mechanism, _driver(mechanism))
+    chains = list(chains)
     found = [one for chain, read in chains for one in _of_chain(chain, read, graph, mechanism, ranges, seed)]
     if not found:
-        what = f"{mechanism.title} is no chain of this atlas"
-        remedy = "four-bars, slider-cranks and six-bars with a crank on the frame are; else give a number of starts"
-        raise InvalidInput(Problem("starts", what, remedy))
+        links = ", ".join(map(str, sorted({chain.links for chain, _ in chains})))
+        what = f"{mechanism.title} is no chain of this atlas, whose linkages have {links} links"
+        remedy = "dyads one on another with a crank on the frame are, of an atlas of as many links; else leave it out"
+        raise InvalidInput(Problem("atlas", what, remedy))
     return {name: np.concatenate([one[name] for one in found]) for name in ranges}
 
 
@@ -71,7 +73,7 @@ def _driver(mechanism: Mechanism) -> str:
     drives = [one.link for one in mechanism.drives if one.on == FRAME]
     if len(drives) != 1 or len(mechanism.drives) != 1:
         what = f"{mechanism.title} is not driven by one crank on the frame"
-        raise InvalidInput(Problem("starts", what, "chains of the atlas are; else give a number of starts"))
+        raise InvalidInput(Problem("atlas", what, "chains of the atlas are; else leave it out"))
     return drives[0]
 
 

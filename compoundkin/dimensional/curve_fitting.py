@@ -16,18 +16,10 @@ import numpy as np
 
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.dimensional.candidates import Candidates, Linkage
-from compoundkin.dimensional.coupler_atlas import (
-    AtlasMatch,
-    SoughtCurve,
-    best_laid,
-    coupler_atlas,
-    mean_distance,
-    on_target,
-    part_laid,
-    resampled,
-)
+from compoundkin.dimensional.coupler_atlas import AtlasMatch, SoughtCurve, coupler_atlas
 from compoundkin.dimensional.curve_chains import CurveChain, Laying, turn
 from compoundkin.dimensional.curve_conditions import CurveConditions, LaidDesigns
+from compoundkin.dimensional.curve_likeness import best_laid, mean_distance, on_target, part_laid, resampled
 from compoundkin.dimensional.defects import Rejection, SolvedLinkage, judged
 from compoundkin.dimensional.design_refinement import FIRST, MOVED, alike, refined, scattered
 from compoundkin.dimensional.tasks import Conditions, CurveTask, CurveTiming

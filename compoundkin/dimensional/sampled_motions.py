@@ -17,9 +17,10 @@ import numpy as np
 
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.dimensional.candidates import POINT, Candidates, Linkage
-from compoundkin.dimensional.coupler_atlas import PARTS, arc_parts, coupler_atlas, interpolated_rows
+from compoundkin.dimensional.coupler_atlas import PARTS, coupler_atlas
 from compoundkin.dimensional.curve_chains import CRANK, CurveChain, Laying, turn
 from compoundkin.dimensional.curve_conditions import keeps_transmission
+from compoundkin.dimensional.curve_likeness import arc_parts, interpolated_rows
 from compoundkin.dimensional.design_refinement import (
     GIVEN,
     FittedDesigns,

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from time import time
 from typing import Any, BinaryIO
 
 from compoundkin.base.errors import InvalidInput, Problem
@@ -62,7 +64,7 @@ def new_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
     """
     check_folder_is_new(path)
     target = Path(os.path.realpath(path))
-    beside = target.with_name(f".{target.name[:40]}.{os.urandom(6).hex()}.tmp")
+    beside = _beside(target)
     try:
         beside.mkdir(parents=True)
         yield beside
@@ -79,10 +81,28 @@ def new_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
         shutil.rmtree(beside, ignore_errors=True)
 
 
+def _beside(target: Path) -> Path:
+    """Return the path of a temporary file or folder, which takes the place of `target` in the end."""
+    return target.with_name(f".{target.name[:40]}.{os.urandom(6).hex()}.tmp")
+
+
+# Temporary files of killed writers; younger ones (seconds) may belong to another run.
+_LEFT, _YOUNG = re.compile(r"\..*\.[0-9a-f]{12}\.tmp", re.DOTALL), 3600
+
+
+def sweep(folder: Path, is_complete: bool) -> None:
+    """Remove temporary files of killed writers from a folder; while it `is_complete` not, old ones alone."""
+    for path in folder.iterdir():
+        # another run may finish its file meanwhile
+        with suppress(FileNotFoundError):
+            if _LEFT.fullmatch(path.name) and (is_complete or time() - path.stat().st_mtime > _YOUNG):
+                path.unlink()
+
+
 @contextmanager
 def atomic_file(target: Path) -> Iterator[BinaryIO]:
     """Yield a new file, which takes the place of `target` if nothing fails; raises OSError where it cannot."""
-    beside = target.with_name(f".{target.name[:40]}.{os.urandom(6).hex()}.tmp")
+    beside = _beside(target)
     try:
         with beside.open("xb") as file:
             yield file

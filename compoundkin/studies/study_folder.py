@@ -12,13 +12,12 @@ import os
 import re
 import secrets
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import lru_cache
 from importlib import import_module
 from math import ceil
 from pathlib import Path
-from time import time
 from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
@@ -26,7 +25,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, LikelySlip, Problem, StudyStopped, warn
 from compoundkin.base.suffixes import suffix_for
-from compoundkin.files.atomic import atomic_file, write_atomically
+from compoundkin.files.atomic import atomic_file, sweep, write_atomically
 from compoundkin.files.saved_files import parquet
 from compoundkin.studies.samples import sample_from
 from compoundkin.studies.samples.variations import variation_from
@@ -234,7 +233,7 @@ class FolderStore(RunStore):
 
     def missing(self) -> Iterator[range]:
         """Yield the rows that are in no part; removes old files of killed writers."""
-        self.folder.sweep(is_complete=False)
+        sweep(self.folder.path, is_complete=False)
         yield from self.folder.missing(len(self.plan))
 
     @property
@@ -255,7 +254,7 @@ class FolderStore(RunStore):
             raise StudyStopped(
                 Problem(str(self.folder.path), f"{missing} rows were written and are missing", "run again")
             )
-        self.folder.sweep(is_complete=True)
+        sweep(self.folder.path, is_complete=True)
         return RowsInFolder(self.head.columns, parts)
 
     def remainder(self) -> str:
@@ -269,8 +268,6 @@ class FolderStore(RunStore):
 PART_BYTES, PARTS_EACH = 2**27, 32
 _SUFFIX = suffix_for("table", "parquet")
 _PART = re.compile(rf"rows-(\d+)-(\d+){re.escape(_SUFFIX)}")
-# Temporary files of killed writers; younger ones (seconds) may belong to another run.
-_LEFT, _YOUNG = ".*.tmp", 3600
 
 
 class StudyPart(NamedTuple):
@@ -327,14 +324,6 @@ class StudyFolder:
     def missing(self, count: int) -> list[range]:
         """Return which of so many rows are in no part."""
         return list(missing_rows((part.fresh for part in self.parts()), count))
-
-    def sweep(self, is_complete: bool) -> None:
-        """Remove temporary files; while rows are missing, only old ones."""
-        for path in self.path.glob(_LEFT):
-            # another run may finish its file meanwhile
-            with suppress(FileNotFoundError):
-                if is_complete or time() - path.stat().st_mtime > _YOUNG:
-                    path.unlink()
 
 
 @dataclass(frozen=True, eq=False, repr=False)

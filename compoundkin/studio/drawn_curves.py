@@ -129,7 +129,7 @@ def _laid(curve: PenCurve, chain: CurveChain, design: Number, laying: Laying) ->
 
 def _error(path: Number, curve: PenCurve) -> float:
     """Return the mean distance from a curve to a path, of a closed one also back: the rest of an open one is free."""
-    from compoundkin.dimensional.coupler_atlas import nearest_distances, resampled
+    from compoundkin.dimensional.curve_likeness import nearest_distances, resampled
 
     one, two = resampled(path[None], 4 * POSES)[0], resampled(curve.points[None], 4 * POSES, curve.closed)[0]
     there = float(nearest_distances(two, one, True).mean())

@@ -50,6 +50,54 @@ def test_bounds_and_constraints_hold() -> None:
     assert "Not all constraints hold" in done.stdout
 
 
+WIDE = "--free", "crank.B.x=0.5:3,coupler.C.x=2:9,rocker.C.x=2:9", "--target", "rocker.angle.stroke=70"
+
+
+def test_searches_begin_at_designs_of_an_atlas(tmp_path: Path) -> None:
+    """Of an atlas that is made for it, or kept: all begin at designs that turn, and the same answer comes out."""
+    pytest.importorskip("pyarrow")
+    made, kept = tmp_path / "made.toml", tmp_path / "kept.toml"
+    ck.coupler_atlas(4, 700, folder=tmp_path / "atlas")
+    for given, path in (("700", made), (str(tmp_path / "atlas"), kept)):
+        done = run(*CRANK_ROCKER, *WIDE, "--full-turn", "--atlas", given, "-o", str(path))
+        assert done.exit_code == 0
+    assert made.read_text(encoding="utf-8") == kept.read_text(encoding="utf-8")
+    angles = ck.solve(ck.load(made), values=ck.deg(np.arange(0, 360, 0.5))).links["rocker"].angle
+    assert np.degrees(np.ptp(angles)) == pytest.approx(70, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("file", "given", "said"),
+    [
+        ("crank-rocker", "nowhere", "there is no such folder\n  where:  --atlas nowhere"),
+        ("crank-rocker", ".", "it holds no atlas of coupler curves"),
+        ("crank-rocker", "1", "2 to 1000000"),
+        ("crank-rocker", "99999999999", "2 to 1000000"),
+        ("crank-rocker", "-5", "no such folder"),
+        ("six-bar", "four", "whose linkages have 4 links"),
+        ("double-parallelogram-lift", "100", "chains of an atlas have four to eight"),
+    ],
+)
+def test_what_is_no_atlas_for_a_mechanism_is_told(
+    file: str, given: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("pyarrow")
+    monkeypatch.chdir(tmp_path)
+    if given == "four":
+        ck.coupler_atlas(4, 100, folder="four")
+    name = next(name for name, link in ck.load(file).links.items() if name != "frame" and len(link.points) > 1)
+    letter = list(ck.load(file).links[name].points)[1]
+    done = run(file, "--free", f"{name}.{letter}.x=1:30", "--least", f"{letter}.x.stroke", f"--atlas={given}")
+    assert done.exit_code == 2
+    assert said in done.stderr
+
+
+def test_an_atlas_with_nothing_in_the_ranges_is_told() -> None:
+    done = run(*CRANK_ROCKER, "--free", "rocker.C.x=900:901", "--least", "rocker.angle.stroke", "--atlas", "100")
+    assert done.exit_code == 2
+    assert "no design of the atlas lies within the ranges" in done.stderr
+
+
 @pytest.mark.parametrize(
     ("args", "said"),
     [

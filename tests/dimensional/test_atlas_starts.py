@@ -9,8 +9,8 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.dimensional.atlas_starts import designs_for
-from compoundkin.dimensional.coupler_atlas import coefficients, likeness
 from compoundkin.dimensional.curve_chains import curve_chains, turn
+from compoundkin.dimensional.curve_likeness import coefficients, likeness
 from compoundkin.errors import InvalidInput
 
 # Links in other coordinates than those of the atlas, with other names and letters.
@@ -88,7 +88,7 @@ def test_searches_begin_at_designs_that_turn_and_find_what_is_hidden() -> None:
     free = {"input.R.y": (0.5, 3.0), "plate.T": ((-6, -6), (6, 6)), "arm.S.x": (1.0, 6.0)}
     hidden = {"input.R.y": 1.4, "plate.T": 1.5 - 2.5j, "arm.S.x": 3.4}
     places = np.ravel(ck.compile(FOUR_BAR, "T.position", free=list(hidden))(turn(24), hidden)["T.position"])
-    found = ck.optimise(FOUR_BAR, free, ck.goals.trace("T", places), values=turn(36), starts=ck.coupler_atlas(4, 2_000))
+    found = ck.optimise(FOUR_BAR, free, ck.goals.trace("T", places), values=turn(36), atlas=ck.coupler_atlas(4, 2_000))
     assert found.check.passed
     for name, value in hidden.items():
         assert found.dimensions[name] == pytest.approx(value, abs=1e-6)
@@ -97,12 +97,12 @@ def test_searches_begin_at_designs_that_turn_and_find_what_is_hidden() -> None:
 def test_what_is_no_chain_or_has_no_room_is_said() -> None:
     atlas = ck.coupler_atlas(4, 500)
     goal = ck.goals.trace("T", [0, 1, 1 + 1j, 1j, 0.5j])
-    with pytest.raises(InvalidInput, match="Six is no chain of this atlas"):
-        ck.optimise(SIX_BAR, {"bar.W.x": (4, 6)}, goal, values=turn(12), starts=atlas)
+    with pytest.raises(InvalidInput, match="Six is no chain of this atlas, whose linkages have 4 links"):
+        ck.optimise(SIX_BAR, {"bar.W.x": (4, 6)}, goal, values=turn(12), atlas=atlas)
     with pytest.raises(InvalidInput, match="no design of the atlas lies within the ranges"):
-        ck.optimise(FOUR_BAR, {"plate.T": ((90, 90), (91, 91))}, goal, values=turn(12), starts=atlas)
-    with pytest.raises(InvalidInput, match="neither a number of starts nor an atlas"):
-        ck.optimise(FOUR_BAR, {"arm.S.x": (1, 4)}, goal, starts="atlas")
+        ck.optimise(FOUR_BAR, {"plate.T": ((90, 90), (91, 91))}, goal, values=turn(12), atlas=atlas)
+    with pytest.raises(InvalidInput, match="atlas: 'atlas' is no design atlas; coupler_atlas"):
+        ck.optimise(FOUR_BAR, {"arm.S.x": (1, 4)}, goal, atlas="atlas")
     sliding = ck.Mechanism("Slid", *SLIDER.links.values(), *SLIDER.written_pairs, ck.drive("block"))
     with pytest.raises(InvalidInput, match="is no chain of this atlas"):
-        ck.optimise(sliding, {"input.R.x": (1, 2)}, goal, values=np.linspace(6.0, 7.0, 12), starts=atlas)
+        ck.optimise(sliding, {"input.R.x": (1, 2)}, goal, values=np.linspace(6.0, 7.0, 12), atlas=atlas)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import signal
+import subprocess
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from itertools import combinations
 from pathlib import Path
@@ -14,10 +17,11 @@ from matplotlib.path import Path as Path_
 
 import compoundkin as ck
 from compoundkin.cli import cli
+from compoundkin.dimensional import atlas_designs, curve_fitting, defects
 from compoundkin.dimensional import coupler_atlas as atlases
-from compoundkin.dimensional import curve_fitting, defects
-from compoundkin.dimensional.coupler_atlas import coefficients, coupler_atlas, likeness, mean_distance, resampled
+from compoundkin.dimensional.coupler_atlas import CouplerAtlas, coupler_atlas
 from compoundkin.dimensional.curve_chains import CurveChain, Laying, curve_chains, turn
+from compoundkin.dimensional.curve_likeness import coefficients, likeness, mean_distance, resampled
 from compoundkin.dimensional.tasks import extent, read_task
 from compoundkin.errors import InvalidInput
 from compoundkin.files.curve_files import read_curve
@@ -312,6 +316,84 @@ def test_an_atlas_in_a_folder_is_opened_and_gives_the_same(tmp_path: Path) -> No
         coupler_atlas(4, 600, 2, tmp_path / "atlas")
 
 
+def test_near_takes_any_number_of_links_that_the_atlas_has() -> None:
+    made = coupler_atlas(6, 900)
+    assert made.links == (4, 5, 6)
+    assert {one.links for one in made.near(EGG, 200, links=5)} == {4, 5}
+    assert {one.links for one in made.near(EGG, 200, links=4)} == {4}
+
+
+@pytest.mark.full
+def test_an_atlas_that_was_killed_goes_on(tmp_path: Path) -> None:
+    """SIGKILL in the middle of a file; the next call makes what is missing."""
+    pytest.importorskip("pyarrow")
+    place = tmp_path / "atlas"
+    script = (
+        "import os, signal\n"
+        "from compoundkin.dimensional import atlas_designs as a\n"
+        "write, left = a.write_atomically, [2]\n"
+        "def killed(path, fill):\n"
+        "    left[0] -= path.suffix == '.parquet'\n"
+        "    kill = lambda file: (file.write(b'PAR'), os.kill(os.getpid(), signal.SIGKILL))\n"
+        "    write(path, fill if left[0] else kill)\n"
+        "a.write_atomically = killed\n"
+        f"a.parts_in_folder(a.AtlasPlan(4, 600, 2), {str(place)!r})\n"
+    )
+    assert subprocess.run([sys.executable, "-c", script], check=False).returncode == -signal.SIGKILL
+    left, *names = sorted(one.name for one in place.iterdir())
+    assert left.startswith(".001.parquet.")
+    assert names == ["000.parquet", "atlas.json"]
+    coupler_atlas(4, 600, 2, place)
+    assert sorted(one.name for one in place.iterdir()) == ["000.parquet", "001.parquet", "atlas.json"]
+
+
+def test_an_atlas_goes_on_where_it_was_ended(tmp_path: Path) -> None:
+    """Chains that are there stay as they are; what killed writers left goes, and nothing else."""
+    pytest.importorskip("pyarrow")
+    plain = coupler_atlas(4, 600, 2)
+    coupler_atlas(4, 600, 2, tmp_path)
+    (tmp_path / "001.parquet").rename(tmp_path / ".001.parquet.0123456789ab.tmp")
+    (tmp_path / ".mine.tmp").touch()
+    before = (tmp_path / "000.parquet").stat().st_mtime_ns
+    with pytest.raises(InvalidInput, match=r"1 of its 2 chains are missing; coupler_atlas\(4, 600, 2, .* goes on"):
+        CouplerAtlas.open(tmp_path)
+    with pytest.raises(InvalidInput, match="another atlas, of 4 links, 600 designs and seed 2"):
+        coupler_atlas(4, 600, 3, tmp_path)
+    made = coupler_atlas(4, 600, 2, tmp_path)
+    assert (tmp_path / "000.parquet").stat().st_mtime_ns == before
+    assert sorted(one.name for one in tmp_path.iterdir()) == [".mine.tmp", "000.parquet", "001.parquet", "atlas.json"]
+    for one, two in zip(made.parts, plain.parts, strict=True):
+        np.testing.assert_array_equal(one.designs(), two.designs())
+        np.testing.assert_array_equal(one.descriptors, two.descriptors)
+
+
+def test_chains_of_eight_links_go_on_from_those_of_six_that_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    six = curve_chains()[2]
+    chains = (six, six.grown("frame", 1), six.grown("crank", 1))
+    monkeypatch.setattr(atlas_designs, "curve_chains", lambda links: chains)
+    plan = atlas_designs.AtlasPlan(8, 300, 1)
+    whole = list(atlas_designs._made(plan, {}, None))
+    kept = {chain.plan: atlas_designs.AtlasPart(chain, len(one), (one, found)) for _, chain, one, found in whole[:2]}
+    ((k, chain, designs, found),) = atlas_designs._made(plan, kept, None)
+    assert (k, chain) == (2, chains[2])
+    np.testing.assert_array_equal(designs, whole[2][2])
+    np.testing.assert_array_equal(found, whole[2][3])
+
+
+def test_folders_without_an_atlas_are_told(tmp_path: Path) -> None:
+    pytest.importorskip("pyarrow")
+    with pytest.raises(InvalidInput, match="there is no such folder"):
+        CouplerAtlas.open(tmp_path / "none")
+    (tmp_path / "mine.txt").write_text("mine", encoding="utf-8")
+    with pytest.raises(InvalidInput, match="it holds no atlas of coupler curves"):
+        CouplerAtlas.open(tmp_path)
+    with pytest.raises(InvalidInput, match=r"it has other files, such as mine\.txt"):
+        coupler_atlas(4, 100, folder=tmp_path)
+    (tmp_path / "atlas.json").write_text('{"format": 2, "links": 5}', encoding="utf-8")
+    with pytest.raises(InvalidInput, match=r"atlas\.json: it cannot be read: it is damaged"):
+        CouplerAtlas.open(tmp_path)
+
+
 def test_an_atlas_is_the_same_made_on_other_workers(tmp_path: Path) -> None:
     """On an executor, whose answers come in any order; each chain's bits are those of this thread."""
     plain = coupler_atlas(4, 700, 5)
@@ -352,7 +434,8 @@ def test_wrong_atlases_say_what_would_do(links: int, count: int, words: str) -> 
         ({"size": 0.0}, "size: lengths do not sum to 0"),
         ({"size": float("nan")}, "size"),
         ({"count": -3}, "count: -3 designs are too few"),
-        ({"links": 3}, "links: 3 links are not in an atlas"),
+        ({"links": 3}, "links: 3 links are not in this atlas; it has those of 4"),
+        ({"links": 6}, "links: 6 links are not in this atlas; it has those of 4"),
         ({"links": "4"}, "links"),
         ({"transmission": 2.0}, "transmission"),
     ],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from time import perf_counter
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -42,6 +42,19 @@ from compoundkin.studies.responses.assembled_range import assembled_range
 from compoundkin.studies.samples.variations import check_kinds, variation_of
 
 
+class DesignAtlas(Protocol):
+    """Designs of many mechanisms that turn fully: whoever has some of a mechanism gives where searches may begin."""
+
+    def designs_for(
+        self, mechanism: Mechanism, ranges: Mapping[str, tuple[complex, complex]], seed: int
+    ) -> Mapping[str, Number]:
+        """Return values of dimensions by name, (designs,), complex of points, that make a mechanism one of its designs.
+
+        `ranges` are from where to where they may be; what designs do not determine is drawn from there by the `seed`.
+        Raises InvalidInput where it has no design of the mechanism.
+        """
+
+
 @checked
 @one_thread
 def optimise(
@@ -56,7 +69,8 @@ def optimise(
     jerk: Any = None,
     time: Any = None,
     modes: Mapping[str, int] | str | Configuration | None = None,
-    starts: Any = 64,
+    starts: int = 64,
+    atlas: DesignAtlas | None = None,
     seed: int = 0,
     method: str | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -69,9 +83,8 @@ def optimise(
 
     Many designs are sampled, searches begin at the best `starts` of them, and the best ends are refined by a method
     of SciPy: "least_squares", "SLSQP", "trust-constr" or "differential_evolution", by default the one that fits. The
-    result is reproducible for a `seed`. `progress(done, total)` is called after every step. Instead of a number
-    `starts` may be an atlas (`coupler_atlas`): the best of its designs of the mechanism's chain begin, at its scale and
-    within the ranges.
+    result is reproducible for a `seed`. `progress(done, total)` is called after every step. Where there is an `atlas`
+    (`coupler_atlas`) its designs of the mechanism's chain, at its scale and within the ranges, are sampled.
 
     Raises UnknownName for unknown dimensions and figures, InvalidInput for arguments that do not fit the mechanism,
     NotAssembled where no design within the ranges is assembled; warns UnmetConstraints where they hold nowhere,
@@ -86,13 +99,12 @@ def optimise(
     """
     began = perf_counter()
     moved = {"values": values, "speed": speed, "acceleration": acceleration, "jerk": jerk, "time": time, "modes": modes}
-    count = starts if isinstance(starts, int) else FROM_ATLAS
     _check_search_numbers(starts, seed)
     goals, constraints = checked_goals(objective), checked_constraints(subject_to)
     with suppress_pose_warnings(), np.errstate(all="ignore"):
         problem = stated_problem(mechanism, free, goals, constraints, **moved)
-        given = None if isinstance(starts, int) else _given(starts, mechanism, problem, seed)
-        search = DesignSearch(problem, count, seed, method, progress, given=given)
+        given = None if atlas is None else _given(atlas, mechanism, problem, seed)
+        search = DesignSearch(problem, starts, seed, method, progress, given=given)
         found = optimum_of_search(search, search.ends(), moved, began)
     _warn(found)
     return found
@@ -114,12 +126,12 @@ def _warn(found: Optimum) -> None:
         warn(f"the design that was found does not pass its verification ({failed}); {remedy}", UnassembledPoses)
 
 
-def _given(starts: Any, mechanism: Mechanism, problem: DesignProblem, seed: int) -> Number:
+def _given(atlas: DesignAtlas, mechanism: Mechanism, problem: DesignProblem, seed: int) -> Number:
     """Return the designs of an atlas within the ranges, by their parts. Raises InvalidInput where there are none."""
     space = problem.space
     ends = np.stack([space.low, space.high])
-    ranges = {name: tuple(complex(*(end[k] for k in at)) for end in ends) for name, at in space.dimensions.items()}
-    values = starts.designs_for(mechanism, ranges, seed)
+    ranges = {name: (complex(*ends[0, at]), complex(*ends[1, at])) for name, at in space.dimensions.items()}
+    values = atlas.designs_for(mechanism, ranges, seed)
     both = ((values[name].real, values[name].imag)[: len(at)] for name, at in space.dimensions.items())
     numbers = [part for one in both for part in one]
     parts = np.full((len(numbers[0]), space.size), 0.5)
@@ -129,23 +141,18 @@ def _given(starts: Any, mechanism: Mechanism, problem: DesignProblem, seed: int)
     if not inside.any():
         name = space.names[int(outside.sum(axis=0).argmax())]
         what = f"no design of the atlas lies within the ranges, most are beyond that of {name}"
-        raise InvalidInput(Problem("starts", what, "widen it, or give a number of starts"))
+        raise InvalidInput(Problem("atlas", what, "widen it, or leave the atlas out"))
     return parts[inside]
 
 
-def _check_search_numbers(starts: Any, seed: int) -> None:
+def _check_search_numbers(starts: int, seed: int) -> None:
     """Raise InvalidInput for an invalid number of starts or seed."""
-    if isinstance(starts, bool) or not (isinstance(starts, int) or hasattr(starts, "designs_for")):
-        what = f"{short_repr(starts)} is neither a number of starts nor an atlas"
-        raise InvalidInput(Problem("starts", what, "give a whole number, or ck.coupler_atlas()"))
-    if isinstance(starts, int) and not 1 <= starts <= MOST_STARTS:
+    if not 1 <= starts <= MOST_STARTS:
         raise InvalidInput(Problem("starts", f"{starts} is no number of starts", f"1 to {MOST_STARTS}"))
     if seed < 0:
         raise InvalidInput(Problem("seed", f"{seed} is no seed", "0 or more"))
 
 
-# How many searches begin at designs of an atlas.
-FROM_ATLAS = 64
 # With more starts not all of them would be assembled designs of the sample.
 MOST_STARTS = 1 << 12
 
