@@ -10,7 +10,7 @@ import pytest
 import compoundkin as ck
 from compoundkin.dynamics.reactions import undetermined
 from compoundkin.dynamics.reactions.undetermined import pressing_force
-from compoundkin.dynamics.simulation import drive_table, simulation_events, tabulated_chart
+from compoundkin.dynamics.simulation import contact_watches, drive_table, tabulated_chart
 from compoundkin.dynamics.simulation.coordinate_change import by_links, chart_of
 from compoundkin.dynamics.simulation.dormand_prince import PlainSolver
 from compoundkin.dynamics.simulation.friction_table import tabulated_pressing
@@ -208,7 +208,7 @@ def test_what_presses_a_contact_under_friction_and_at_stops_is_known_in_three_wa
     chart = chart_of(ck.solve(cam, {driver.name: [0.3]}), (driver.name,), {})
     assert isinstance(chart, TabulatedChart)
     speed = 0.0 if kind == "rigid" else 3.0
-    simulation_events.begin_at_stops(chart, np.array([0.3, speed, 0.0]))
+    contact_watches.begin_at_stops(chart, np.array([0.3, speed, 0.0]))
     for value in np.linspace(-2.3, 2.7, 5).tolist():
         state = np.array([value, speed, 0.0])
         chart.begin(0.7, state[:1], state[1:2])
@@ -217,7 +217,7 @@ def test_what_presses_a_contact_under_friction_and_at_stops_is_known_in_three_wa
         links, by = by_links(chart, here)
         n = len(links.free)
         links.begin(0.7, by[:n], by[n:])
-        known = simulation_events._pressed(contact, chart, here, state)
+        known = contact_watches.pressed(contact, chart, here, state)
         assert abs(known) > 0.1
         assert tabulated_pressing(chart, contact, 0.7, value, speed) == pytest.approx(known, rel=1e-9)
         assert links.pressing(contact, 0.7, by[:n], by[n:]) == pytest.approx(known, rel=1e-9)

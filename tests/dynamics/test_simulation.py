@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.dynamics.simulation.contact_watches import begin_at_stops
 from compoundkin.dynamics.simulation.coordinate_change import by_links, chart_of
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.forward_dynamics import simulation_start
 from compoundkin.dynamics.simulation.friction_table import FrictionTable
 from compoundkin.dynamics.simulation.integration import integrate
 from compoundkin.dynamics.simulation.simulated_course import SimulatedCourse
-from compoundkin.dynamics.simulation.simulation_events import begin_at_stops
 from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
 from compoundkin.errors import FewDigits, InvalidInput, UnknownName
 from tests.dynamics.cases import SI

@@ -20,6 +20,7 @@ from compoundkin.base.linear import one_thread
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.dynamics.loaded_block import loaded_blocks
+from compoundkin.dynamics.simulation.contact_watches import begin_at_stops, idle_latches
 from compoundkin.dynamics.simulation.coordinate_change import Chart, chart_of, integrable
 from compoundkin.dynamics.simulation.driver_chart import DriverChart
 from compoundkin.dynamics.simulation.driver_state import rotors_that_lose
@@ -29,8 +30,8 @@ from compoundkin.dynamics.simulation.phases import SimulationPhase
 from compoundkin.dynamics.simulation.simulated_course import ChartStretch, SimulatedCourse, Step
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy, joined_energy, simulated_energy
 from compoundkin.dynamics.simulation.simulation import Simulation
-from compoundkin.dynamics.simulation.simulation_events import begin_at_stops, idle_latches, watches
 from compoundkin.dynamics.simulation.tabulated_chart import counted_angles
+from compoundkin.dynamics.simulation.watches import watches
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.curve.driver_path import drawn_value

@@ -16,6 +16,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.friction.coulomb_friction import NotUniqueMotion
+from compoundkin.dynamics.simulation.contact_watches import ContactWatch, StopWatch, stop_watches
 from compoundkin.dynamics.simulation.coordinate_change import Chart, by_links, driven_there, fastest_pairs
 from compoundkin.dynamics.simulation.dormand_prince import PlainSolver
 from compoundkin.dynamics.simulation.drive_table import FASTER
@@ -37,23 +38,11 @@ from compoundkin.dynamics.simulation.load_jumps import (
 from compoundkin.dynamics.simulation.phases import OpenPair, landed, without_pair
 from compoundkin.dynamics.simulation.simulated_course import SimulatedCourse, Step
 from compoundkin.dynamics.simulation.simulation_events import (
-    END,
-    JUMP,
-    REST,
-    REVERSES,
-    STICKS,
     BreakWatch,
-    ContactWatch,
-    LiftOffWatch,
     Passed,
     PlaceWatch,
     SimulationEvent,
-    StopWatch,
-    after_impact,
-    ended_pair,
     first_passed,
-    stop_watches,
-    watches,
 )
 from compoundkin.dynamics.simulation.step_lengths import (
     DYING,
@@ -67,6 +56,17 @@ from compoundkin.dynamics.simulation.step_lengths import (
     stalls,
 )
 from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
+from compoundkin.dynamics.simulation.watches import (
+    END,
+    JUMP,
+    REST,
+    REVERSES,
+    STICKS,
+    LiftOffWatch,
+    after_impact,
+    ended_pair,
+    watches,
+)
 from compoundkin.model.loads.latch import Release
 
 # Where friction has no motion within a step, one that is so many times shorter is tried.

@@ -15,9 +15,10 @@ from compoundkin.base.arrays import Number
 from compoundkin.dynamics.simulation.coordinate_change import Chart
 from compoundkin.dynamics.simulation.driver_chart import BESIDE, DriverChart, HeldSpeed
 from compoundkin.dynamics.simulation.simulated_course import SimulatedCourse, Step
-from compoundkin.dynamics.simulation.simulation_events import JUMP, STICKS, SimulationEvent
+from compoundkin.dynamics.simulation.simulation_events import SimulationEvent
 from compoundkin.dynamics.simulation.step_lengths import STALLED
 from compoundkin.dynamics.simulation.stop_contacts import is_no_contact
+from compoundkin.dynamics.simulation.watches import JUMP, STICKS
 from compoundkin.model.loads.attachments import PairLoad
 from compoundkin.model.loads.contract import Load
 
