@@ -28,7 +28,10 @@ AT_ENDS = chebyshev.chebvander(np.array([-1.0, 1.0]), INNER - 1).T
 # The polynomials are first looked at so finely, and then followed by Newton's method.
 FINE = np.linspace(-1.0, 1.0, 65)
 AT_FINE = chebyshev.chebvander(FINE, INNER - 1).T
-NEWTON = 6
+# Its first steps are taken by all, the others by those that still move.
+NEWTON, SHARED = 6, 4
+# So many polynomials are looked at together, whose fine values stay in a processor's cache.
+TOGETHER = 512
 # First and second derivatives of polynomials, interleaved so that both are evaluated at once, (degrees, 2, degrees).
 DERIVATIVES = np.zeros((INNER - 1, 2, INNER))
 DERIVATIVES[:, 0] = chebyshev.chebder(np.eye(INNER))
@@ -81,7 +84,8 @@ class Windows(ShortRepr):
     @staticmethod
     def samples(low: Number, high: Number) -> Number:
         """Return where windows are sampled, (n, samples)."""
-        places = low[:, None] + 0.5 * (1.0 + SAMPLES) * (high - low)[:, None]
+        places = np.multiply(0.5 * (1.0 + SAMPLES), (high - low)[:, None])
+        places += low[:, None]
         places[:, -1] = high
         return places
 
@@ -98,11 +102,6 @@ class Windows(ShortRepr):
     def polynomials(self) -> Number:
         """The coefficients of the polynomials through the inner samples, (..., n, degrees)."""
         return self.smooth_values[..., 1:-1] @ FIT
-
-    @cached_property
-    def fine(self) -> Number:
-        """The values of the polynomials at `FINE`."""
-        return self.polynomials @ AT_FINE
 
     @cached_property
     def off(self) -> Number:
@@ -132,8 +131,8 @@ class Windows(ShortRepr):
 
     def most(self, sign: Number) -> Number:
         """Return about the greatest value that there may be, times signs that fit to windows."""
-        samples = np.fmax.reduce(sign[..., None] * self.smooth_values, axis=-1)
-        top = (sign[..., None] * self.fine).max(axis=-1)
+        samples = np.fmax.reduce(np.moveaxis(sign[..., None] * self.smooth_values, -1, 0).copy())
+        _, top = self._finest(sign)
         # where the polynomial is unknown only samples are
         most = np.fmax(samples, top + MISSED * self._sums[..., 0] + self._sums[..., 1])
         return sign * self._unsquared(sign * most)
@@ -143,30 +142,39 @@ class Windows(ShortRepr):
 
         What varies by no more than rounding of `largest` is greatest from the beginning.
         """
-        c, start = self.polynomials.T, FINE[self._finest(sign)]
+        c, start = self.polynomials.T, FINE[self._finest(sign)[0]]
         both = (DERIVATIVES.reshape(-1, INNER) @ c).reshape(INNER - 1, 2, -1)
         spacing = FINE[1] - FINE[0]
         low, high = np.maximum(start - spacing, -1.0), np.minimum(start + spacing, 1.0)
-        t: Number = start
-        for _ in range(NEWTON):
-            first, second = chebyshev.chebval(t, both, tensor=False)
-            step = first / second
-            t = np.minimum(np.maximum(np.where(np.isfinite(step), t - step, t), low), high)
-        # a curve that runs into a plateau is level at the end, as nearly as the polynomial tells it
-        end, index = np.where(t < 0.0, 0, 1), np.arange(len(t))
-        slope = np.abs((self.polynomials @ SLOPES.T)[index, 1 - end])
-        rounding = SLOPE_OF_ROUNDING * self._sizes.max(axis=-1)
-        level = slope <= SLOPE_OF_ERROR * self._off_at_ends[index, end] + rounding
-        t = np.where(level & (np.abs(start) >= 1.0 - 1.5 * spacing), 2.0 * end - 1.0, t)
+        before = _stationary(both, start, low, high, SHARED - 1)
+        t = _stationary(both, before, low, high, 1)
+        # most have come to rest
+        going = np.flatnonzero(t != before)
+        t[going] = _stationary(both.take(going, axis=-1), t[going], low[going], high[going], NEWTON - SHARED)
+        outer = np.abs(start) >= 1.0 - 1.5 * spacing
+        if outer.any():
+            # a curve that runs into a plateau is level at the end, as nearly as the polynomial tells it
+            slopes, off, before = self.polynomials @ SLOPES.T, self._off_at_ends, t < 0.0
+            slope = np.abs(np.where(before, slopes[:, 1], slopes[:, 0]))
+            rounding = SLOPE_OF_ROUNDING * np.maximum.reduce(self._sizes.T.copy())
+            level = slope <= SLOPE_OF_ERROR * np.where(before, off[:, 0], off[:, 1]) + rounding
+            t = np.where(level & outer, np.where(before, -1.0, 1.0), t)
         t = np.where(self._sums[..., 0] <= self._rounding(largest), -1.0, t)
-        smooth, off = chebyshev.chebval(t, c, tensor=False), sign * self.off
+        smooth, off = _at_inside(t, c), sign * self.off
         return t, sign * self._unsquared(smooth - off), sign * self._unsquared(smooth + off)
 
-    def _finest(self, sign: Number) -> Number:
-        """Return where among `FINE` polynomials are greatest, times signs."""
-        if len(sign) and np.all(sign == sign[0]):
-            return self.fine.argmax(axis=-1) if sign[0] > 0.0 else self.fine.argmin(axis=-1)
-        return np.argmax(sign[:, None] * self.fine, axis=-1)
+    def _finest(self, sign: Number) -> tuple[Number, Number]:
+        """Return where among `FINE` polynomials are greatest, times signs, and their values there, times signs."""
+        c = sign[..., None] * self.polynomials
+        shape, c = c.shape[:-1], c.reshape(-1, INNER)
+        k, top, fine = np.empty(len(c), dtype=np.intp), np.empty(len(c)), np.empty((TOGETHER, len(FINE)))
+        rows = len(FINE) * np.arange(TOGETHER)
+        for first in range(0, len(c), TOGETHER):
+            part = slice(first, first + TOGETHER)
+            values = np.matmul(c[part], AT_FINE, out=fine[: len(c) - first])
+            values.argmax(axis=-1, out=k[part])
+            values.take(rows[: len(values)] + k[part], out=top[part])
+        return k.reshape(shape), top.reshape(shape)
 
     def roots(self) -> Number:
         """Return zeros of polynomials (n, degrees) of opposite signs at their ends, from -1 to 1."""
@@ -201,6 +209,37 @@ class Windows(ShortRepr):
 
     def _unsquared(self, values: Number) -> Number:
         return np.where(self.squared, np.sqrt(np.maximum(values, 0.0)), values) if self.squared.any() else values
+
+
+def _stationary(slopes: Number, t: Number, low: Number, high: Number, steps: int) -> Number:
+    """Return where first derivatives are zero, by Newton's method from places `t` between `low` and `high`.
+
+    `slopes` are the first and second derivatives, (degrees, 2, n).
+    """
+    for _ in range(steps):
+        step, bend = _at_inside(t, slopes)
+        step /= bend
+        # where there is no step it stays
+        np.copyto(step, 0.0, where=~np.isfinite(step))
+        t = np.subtract(t, step, out=step)
+        np.minimum(np.maximum(t, low, out=t), high, out=t)
+    return t
+
+
+def _at_inside(t: Number, c: Number) -> Number:
+    """Return Chebyshev polynomials (degrees, ..., n) at places (n,), as `chebval` does, in memory of its own only.
+
+    Source: C. W. Clenshaw, Mathematical Tables and Other Aids to Computation 9 (1955).
+    """
+    twice, last, before = 2.0 * t, c[-1].copy(), c[-2].copy()
+    for k in range(len(c) - 3, -1, -1):
+        other = last * twice
+        other += before
+        np.subtract(c[k], last, out=before)
+        last = other
+    last *= t
+    last += before
+    return last
 
 
 class ValuesAtPlaces(Protocol):
@@ -257,7 +296,7 @@ def peaks(
     for left in range(narrowings, -1, -1):
         good = windows.right(TRUSTED, largest) if left else np.zeros(len(which), dtype=bool)
         if good.any():
-            some, index = windows.some(good), which[good]
+            some, index = (windows, which) if good.all() else (windows.some(good), which[good])
             inside, *height = some.vertices(sign[good], largest[good])
             found.append((index, f.places(index, some.at(inside)), *height, np.abs(inside) < 1.0))
             np.fmax.at(best, kind[good], height[0])
@@ -289,7 +328,8 @@ def _vertices(
     np.fmin.at(first, kind[may], place[may])
     # a vertex just before the end of a cycle is beside its beginning
     near = (place <= first[kind] + 1.0) | ((first[kind] == 0.0) & (place >= last - 1.0)) | (high - low > alike)
-    which, place, kind, inside = (v[may & near] for v in (which, place, kind, inside))
+    if not (may & near).all():
+        which, place, kind, inside = (v[may & near] for v in (which, place, kind, inside))
     if len(which):
         value = sought.sign[which] * f.values(which, place)
         yield Offers(kind[inside], value[inside], place[inside], vertex=True)

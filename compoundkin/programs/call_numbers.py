@@ -196,7 +196,7 @@ def broadcast_shape(shape: tuple[int, ...], other: tuple[int, ...], where: str) 
 
 def numbers_of_designs(numbers: CallNumbers, designs: Number) -> CallNumbers:
     """Return the numbers of some designs, by index."""
-    given = {one: value[designs] if value.shape[0] > 1 else value for one, value in numbers.given.items()}
+    given = {one: value.take(designs, axis=0) if len(value) > 1 else value for one, value in numbers.given.items()}
     return replace(numbers, given=given, shape=(len(designs), numbers.extent[1]))
 
 

@@ -219,7 +219,8 @@ RATES = HIGHEST_ORDER + 1
 
 def interval(inputs: Inputs, places: Number) -> tuple[Number, Number]:
     """Return the pose before each place, and how far on the place is."""
-    k = np.clip(np.floor(places).astype(int), 0, max(inputs.poses - 2, 0))
+    k = places.astype(int)
+    np.minimum(np.maximum(k, 0, out=k), max(inputs.poses - 2, 0), out=k)
     return k, places - k
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, TypeVar
 
 import numpy as np
 
-from compoundkin.base.arrays import Number, whole_turns
+from compoundkin.base.arrays import HALF_TURN, Number, whole_turns
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import CompoundkinError, Problem
 from compoundkin.kinematics.driver_values import Inputs
@@ -18,10 +18,11 @@ from compoundkin.kinematics.extremes.motion_between import inputs_between, inter
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.attributes import RADIANS, RATES, TIME
-from compoundkin.programs.call_numbers import Call, CallNumbers
+from compoundkin.programs.call_numbers import Call, CallNumbers, numbers_of_designs
 from compoundkin.programs.compiled_path import CompiledPath
 from compoundkin.programs.derivatives.path_objective import PathObjective
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
+from compoundkin.programs.graph.operation_graph import DRIVE, InputNumber
 from compoundkin.programs.path_values import PathValues
 
 Result = TypeVar("Result")
@@ -174,24 +175,61 @@ class Designs(ShortRepr):
         Those are numbers of poses, fractional ones between them. Drivers are there where their laws take them, else
         linearly from pose to pose.
         """
-        if self.times is None:
-            return replace(self.picked(rows), inputs=inputs_at(self.inputs, rows, places))
-        inputs, times = inputs_in_time(self.path.reference, self.path.compiled.programs.order, places)
+        inputs, times = self._inputs_between(rows, places)
         return replace(self.picked(rows), inputs=inputs, times=times)
 
-    def values_at(self, name: str, rows: Number, places: Number, is_angle: bool = False) -> Number:
-        """Return an output of some designs at places, (rows, places), angles in the turn of the neighbouring poses."""
-        there = self.between(rows, places).numbers
+    def _inputs_between(self, rows: Number, places: Number) -> tuple[Inputs, Number | None]:
+        if self.times is None:
+            return inputs_at(self.inputs, rows, places), None
+        return inputs_in_time(self.path.reference, self.path.compiled.programs.order, places)
+
+    def values_at(
+        self, name: str, rows: Number, places: Number, is_angle: bool = False, index: Number | None = None
+    ) -> Number:
+        """Return an output of some designs at places, (rows, places), angles in the turn of the neighbouring poses.
+
+        With an `index` (rows,) the places of each are a row of a table of them.
+        """
+        there = self._numbers_between(rows, places, index)
         # a design that stays in its mode needs no look at limits between its poses
         programs = self.path.compiled.programs
-        found = np.broadcast_to(programs.program(there).run(there)[name], places.shape)
-        if not is_angle:
+        found = np.broadcast_to(programs.program(there).run(there)[name], there.shape)
+        if not is_angle or _are_within_half_a_turn(
+            found, self.computed_once(("range", name), partial(self._range, name))
+        ):
             return found
+        places = places if index is None else places.take(index, axis=0)
         k, weight = interval(self.inputs, places)
         # all values in one row are read in less time than a table
         course, at = np.ravel(self.outputs[name]), rows[:, None] * self.poses + k
         beside = course.take(at) * (1.0 - weight) + course.take(at + 1) * weight
         return found + whole_turns(beside - found)
+
+    def _numbers_between(self, rows: Number, places: Number, index: Number | None) -> CallNumbers:
+        """Return the numbers of some at places: those of all of them, with other drivers."""
+        programs = self.path.compiled.programs
+        is_solved = bool(programs.law_numbers or programs.variant(frozenset()).seeds)
+        is_common = self.times is not None or are_rows(self.inputs)
+        if index is not None and (is_solved or not is_common):
+            places, index = places.take(index, axis=0), None
+        if is_solved:
+            return self.between(rows, places).numbers
+        # where drivers move in the same way in all designs they are needed once for each row of the table
+        inputs, _ = self._inputs_between(rows, places)
+        own = {one: value for one, value in self.numbers.given.items() if one.kind != DRIVE}
+        found = numbers_of_designs(replace(self.numbers, given=own), rows)
+        given, still = dict(found.given), set()
+        for name, rates in inputs.drives.items():
+            for k, rate in enumerate(rates):
+                value = np.atleast_2d(np.asarray(rate, float))
+                if k and not np.count_nonzero(value):
+                    still.add((name, k))
+                one = InputNumber(DRIVE, name, str(k))
+                given[one] = value if index is None or value.size == 1 else value.take(index, axis=0)
+        return CallNumbers(given, (len(rows), places.shape[1]), frozenset(still))
+
+    def _range(self, name: str) -> tuple[float, float]:
+        return _range_of(self.outputs[name])
 
     def slopes_at(self, name: str, rows: Number, places: Number) -> Number:
         """Return the slopes of an output at places of some. They are (coordinates, rows, places)."""
@@ -233,7 +271,39 @@ def inputs_of_designs(inputs: Inputs, rows: Number) -> Inputs:
 
 def inputs_at(inputs: Inputs, rows: Number, places: Number) -> Inputs:
     """Return the inputs at places (rows, places), linear between poses."""
-    return _laid(inputs.pick(np.repeat(rows, places.shape[1]), places.ravel()), places.shape)
+    if not are_rows(inputs):
+        return _laid(inputs.pick(np.repeat(rows, places.shape[1]), places.ravel()), places.shape)
+    k, weight = interval(inputs, places)
+    rest = 1.0 - weight
+
+    def at(value: Number) -> Number:
+        if not np.ndim(value):
+            return value
+        before, after = value[0].take(k), value[0, 1:].take(k)
+        before *= rest
+        after *= weight
+        before += after
+        return before
+
+    return Inputs(places.shape, inputs.ends, {name: tuple(map(at, values)) for name, values in inputs.drives.items()})
+
+
+def are_rows(inputs: Inputs) -> bool:
+    """Tell whether drivers move in the same way in all designs: each of their numbers is one, or a row of them."""
+    numbers = (value for rates in inputs.drives.values() for value in rates if np.ndim(value))
+    return all(len(value) == 1 and value.shape[1] > 1 for value in numbers)
+
+
+def _range_of(values: Number) -> tuple[float, float]:
+    """Return the least and the greatest of some values, without those that are NaN."""
+    low, high = values.item(values.argmin()), values.item(values.argmax())
+    return (low, high) if low <= high else (np.fmin.reduce(values, axis=None), np.fmax.reduce(values, axis=None))
+
+
+def _are_within_half_a_turn(angles: Number, others: tuple[float, float]) -> bool:
+    """Tell whether angles are all in the turn of others, whose least and greatest are given."""
+    low, high = _range_of(angles)
+    return high - others[0] < HALF_TURN and others[1] - low < HALF_TURN
 
 
 def inputs_in_time(motion: Motion, order: int, places: Number) -> tuple[Inputs, Number]:

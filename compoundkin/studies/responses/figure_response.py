@@ -72,23 +72,23 @@ class CourseSearch(ShortRepr):
         """Return the greatest values and their places: of samples, and of peaks in the windows around them."""
         # places of extremes are found in less time than their values
         every, k = np.arange(len(course)), course.argmax(axis=1)
-        best, least = course[every, k], course[every, course.argmin(axis=1)]
+        begin, flat = every * course.shape[1], np.ravel(course)
+        best, least = flat.take(begin + k), flat.take(begin + course.argmin(axis=1))
         largest = np.maximum(np.abs(best), np.abs(least))
         offers = [Offers(every, best, k / parts)]
-        rows, k = np.divmod(np.flatnonzero(_peaks(course, best[:, None])), course.shape[1])
+        rows, k = _peaks(course, best)
         if len(rows):
             sought = SoughtPeaks(rows, np.full(len(rows), self.sign), largest[rows], (best - least)[rows])
             f = DesignCourses(self, rows)
-            low, high = np.maximum(k - 1.0, 0.0) / parts, np.minimum(k + 1.0, course.shape[1] - 1.0) / parts
-            found = peaks(
-                f, sought, *f.windows(np.arange(len(rows)), low, high), best, self.designs.poses - 1, NARROWINGS
-            )
-            offers += found
+            windows, places = f.windows_around(k, course.shape[1], parts)
+            offers += peaks(f, sought, windows, places, best, self.designs.poses - 1, NARROWINGS)
         value, place, _ = best_of(offers, largest, np.asarray(self.squared))
+        # what is far beyond all others may be so
+        far = value > POLE * np.maximum(np.maximum(least, -best), 0.0)
         narrowed = np.zeros(len(every), dtype=bool)
-        for one in offers:
+        for one in offers if far.any() else ():
             narrowed[one.kind] |= not one.exact
-        rows = np.flatnonzero(narrowed)
+        rows = np.flatnonzero(narrowed & far)
         if len(rows):
             # what is far beyond the median passes through infinity, as the reciprocal of a rate
             low = POLE * np.abs(course[rows]) < value[rows, None]
@@ -106,8 +106,18 @@ class DesignCourses(ShortRepr):
     def windows(self, which: Number, low: Number, high: Number) -> tuple[Windows, Number]:
         """Return windows with their samples, and the places of these."""
         places = Windows.samples(low, high)
-        squared = np.broadcast_to(self.search.squared, len(which))
-        return Windows(low, high, self._at(which, places), squared), places
+        return Windows(low, high, self._at(which, places), self._squared(low)), places
+
+    def windows_around(self, k: Number, samples: int, parts: int) -> tuple[Windows, Number]:
+        """Return windows around samples `k` (n,) of so many, `parts` of them from pose to pose; places of theirs."""
+        every = np.arange(float(samples))
+        low, high = np.maximum(every - 1.0, 0.0) / parts, np.minimum(every + 1.0, samples - 1.0) / parts
+        table, own, search = Windows.samples(low, high), low[k], self.search
+        values = search.designs.values_at(search.name, self.rows, table, search.is_angle, k)
+        return Windows(own, high[k], values, self._squared(own)), table.take(k, axis=0)
+
+    def _squared(self, like: Number) -> Number:
+        return np.broadcast_to(self.search.squared, len(like))
 
     def places(self, which: Number, t: Number) -> Number:
         """Return the places themselves."""
@@ -121,24 +131,31 @@ class DesignCourses(ShortRepr):
         return self.search.designs.values_at(self.search.name, self.rows[which], places, self.search.is_angle)
 
 
-def _peaks(course: Number, best: Number) -> Number:
-    """Return the poses near which the greatest value may be: no neighbour is higher, and the bend is large enough.
+def _peaks(course: Number, best: Number) -> tuple[Number, Number]:
+    """Return designs and poses near which the greatest value may be: no neighbour is higher, the bend is large enough.
 
-    `best` are the greatest at the poses, (designs, 1).
+    `best` are the greatest at the poses, (designs,).
     """
-    rising, poses = course[:, 1:] - course[:, :-1], course.shape[1]
-    peak = np.ones(course.shape, dtype=bool)
-    peak[:, 1:] &= rising >= 0.0
-    peak[:, :-1] &= rising <= 0.0
+    poses = course.shape[1]
+    # all rows are compared as one, which their ends interrupt
+    flat = np.ravel(course)
+    peak, falls = np.empty((2, *course.shape), dtype=bool)
+    np.greater_equal(flat[1:], flat[:-1], out=np.ravel(peak)[1:])
+    np.less_equal(flat[1:], flat[:-1], out=np.ravel(falls)[:-1])
+    peak[:, 0] = falls[:, -1] = True
+    peak &= falls
+    found = np.flatnonzero(peak)
+    rows = found // poses
+    k = found - rows * poses
     if poses < 3:
-        return peak
-    added = np.empty(course.shape)
-    np.abs(rising[:, 1:] - rising[:, :-1], out=added[:, 1:-1])
-    added[:, 1:-1] *= MOST_ADDED
-    added[:, 0], added[:, -1] = added[:, 1], added[:, -2]
-    peak &= course + added >= best
-    peak &= added > ROUNDING * np.abs(best)
-    return peak
+        return rows, k
+    # the bend at a neighbour stands for that at an end
+    inner = rows * poses + np.clip(k, 1, poses - 2)
+    before, own, after = (flat.take(inner + step) for step in (-1, 0, 1))
+    added = MOST_ADDED * np.abs((after - own) - (own - before))
+    best = best[rows]
+    may = (flat.take(found) + added >= best) & (added > ROUNDING * np.abs(best))
+    return rows[may], k[may]
 
 
 # By how much each figure counts the greatest and the least value.
