@@ -11,14 +11,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.curve.change_points import NEAR
-from compoundkin.kinematics.curve.driver_path import MOST, SPACING, approach, drawn_value, driver_path
+from compoundkin.kinematics.curve.driver_path import FEWEST, MOST, SPACING, approach, drawn_value, driver_path
 from compoundkin.kinematics.curve.modes import StatedModes
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.motion import Motion
@@ -28,6 +28,8 @@ from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, HOLDS, 
 from compoundkin.programs.recording.recorded_limits import CLOSE, RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import Recording, record_mechanism
 
+# The place of the least margin among what is computed at poses.
+MARGIN = 1
 # So many poses are screened together.
 POSES_AT_ONCE = 1 << 19
 
@@ -127,12 +129,31 @@ class LimitScreening(ShortRepr):
         return (
             margin >= NEAR
             and margin >= self._safe_margin(values, steps)
-            and (self.approach.is_passed(values) or not self._squares or self._clear.has(values, numbers))
+            and (self.approach.is_passed(values) or not self._squares or self._is_approached(values, numbers()))
         )
+
+    def _is_approached(self, values: Mapping[str, Number], numbers: CallNumbers) -> bool:
+        """Tell whether the only design is clear of limits on the approach to a motion."""
+        way = self.approach.way(values)
+        if way is None:
+            return False
+        design = _one_design(numbers)
+        if not way.far or self._clear.has(design, way):
+            return True
+        if _vary_along_motion(numbers):
+            return False
+        is_clear = bool(np.all(self._early(numbers, way.values) >= NEAR))
+        self._clear.explore(design, way, numbers.extent[1] == 1, partial(self._early, numbers))
+        return is_clear
 
     @cached_property
     def _clear(self) -> ClearApproaches:
-        return ClearApproaches(self.approach)
+        return ClearApproaches()
+
+    def _early(self, numbers: CallNumbers, approach: Mapping[str, Number]) -> Number:
+        """Return the least margins of groups on an approach, (1 or designs, values)."""
+        resting = _resting(numbers, approach)
+        return self._program(self._poses, resting).run(resting)[MARGIN]
 
     def _safe_margin(self, values: Mapping[str, Number], steps: Mapping[str, Number] = MappingProxyType({})) -> float:
         return float(safe_margin(max(1.0, self._longest_step(values, steps))))
@@ -165,23 +186,17 @@ class LimitScreening(ShortRepr):
             return np.zeros_like(near), near
         near = ~(least.min(axis=1) >= self._safe_margin(numbers.driver_values))
         approach = self.approach.values(numbers.driver_values) if self._squares else None
-        if any(value.shape[1] > 1 for given, value in numbers.given.items() if given.kind == DIMENSION):
-            # designs whose dimensions vary along the motion are solved at once
+        if _vary_along_motion(numbers):
+            # such designs are solved at once
             return np.zeros_like(near), near | (approach is not None)
         if approach is None:
             return near, np.zeros_like(near)
-        early = self._computed(self._poses, _resting(numbers, approach))[1]
-        self._clear.explore(numbers, partial(self._margins, numbers), min(self._spacings.values()))
-        return near, np.any(early < NEAR, axis=1)
+        return near, np.any(self._early(numbers, approach) < NEAR, axis=1)
 
     def clear(self, numbers: CallNumbers, least: Number) -> Number:
         """Return which designs (designs,) need no screening, and are what the program computes."""
         near, early = self.needed(numbers, least)
         return np.broadcast_to(~(near | early), numbers.extent[:1])
-
-    def _margins(self, numbers: CallNumbers, name: str, values: Number) -> Number:
-        """Return the least margins of groups at values of the only driver, (1 or designs, values)."""
-        return self._computed(self._poses, _resting(numbers, {name: values}))[1]
 
     def screen(self, numbers: CallNumbers, least: Number) -> ScreenedDesigns | None:
         """Screen the designs that need it; return None where none does.
@@ -251,14 +266,19 @@ class LimitScreening(ShortRepr):
         return (limits, nodes) if nodes else None
 
     def _computed(self, wanted: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers) -> list[Number]:
-        """Return some nodes at all designs and poses; their program is made once for numbers of each form."""
+        """Return some nodes at all designs and poses."""
+        found = self._program(wanted, numbers).run(numbers)
+        return [np.broadcast_to(value, numbers.extent) for value in found.values()]
+
+    def _program(self, wanted: tuple[RecordedLimits, Sequence[int]], numbers: CallNumbers) -> ReadyProgram[int]:
+        """Return the program of some nodes, by their places among them; it is made once for numbers of each form."""
         limits, nodes = wanted
         graph = limits.mechanism.graph
         key = id(graph), tuple(nodes), tuple(numbers.given), numbers.form
         if key not in self._ready:
             named = {place: (node,) for place, node in enumerate(nodes)}
             self._ready[key] = ReadyProgram.of(graph, named, numbers, self.backend)
-        return [np.broadcast_to(value, numbers.extent) for value in self._ready[key].run(numbers).values()]
+        return self._ready[key]
 
 
 def _refined(value: Number, per_pose: int) -> Number:
@@ -315,73 +335,88 @@ CLEAR = 4.0 * NEAR
 APPROACHES_KEPT = 64
 
 
-class ClearApproaches(ShortRepr):
-    """Ranges of the only driver, from where it is drawn on, over which designs were found clear of limits.
+class ApproachWay(NamedTuple):
+    """The way of the only driver from where it is drawn, at `home`, to the nearest value of a motion, so far on.
 
-    Who asks for one pose after another approaches over the same values each time.
+    It is looked at in steps of `spacing` or less, at least so many.
     """
 
-    def __init__(self, approach: DrawnApproach) -> None:
-        self.approach = approach
-        self._ranges: dict[tuple[float, ...] | None, tuple[float, float]] = {}
+    driver: str
+    home: float
+    far: float
+    is_angle: bool
+    spacing: float
+
+    @property
+    def values(self) -> Mapping[str, Number]:
+        """The driver's values on it, (1, values)."""
+        return {self.driver: self.home + self.places(self.far, self.spacing)[None]}
+
+    def places(self, far: float, spacing: float) -> Number:
+        """Return places from home on."""
+        count = min(int(np.ceil(abs(far) / spacing)), MOST)
+        return np.linspace(0.0, far, max(count, 1 if self.is_angle else FEWEST) + 1)
+
+
+class ClearApproaches(ShortRepr):
+    """How far the only driver can go from where it is drawn, back and on, so that designs are clear of limits.
+
+    Who asks for one pose or one motion after another approaches over the same values each time.
+    """
+
+    def __init__(self) -> None:
+        self._clear: dict[tuple[float, ...], tuple[float, float]] = {}
         self._explored: dict[tuple[float, ...], tuple[float, float]] = {}
+        self._last: tuple[float, ...] | None = None
 
-    def has(self, values: Mapping[str, Number], numbers: Callable[[], CallNumbers]) -> bool:
-        """Tell whether the approach to a motion of one design is over values that are known to be clear."""
-        if not self._ranges or len(values) != 1:
-            return False
-        known, ways = self._ranges.get(_one_design(numbers())), self._ways(*values.items())
-        return known is not None and ways is not None and known[0] <= ways[0] and ways[1] <= known[1]
+    def has(self, design: tuple[float, ...] | None, way: ApproachWay) -> bool:
+        """Tell whether a way is over values that are known to be clear."""
+        known = None if design is None else self._clear.get(design)
+        return known is not None and known[0] <= way.far <= known[1]
 
-    def explore(self, numbers: CallNumbers, margins: Callable[[str, Number], Number], spacing: float) -> None:
-        """Look how far a design is clear, once one pose of it is asked for: a whole turn, or twice as far as that pose.
+    def explore(
+        self,
+        design: tuple[float, ...] | None,
+        way: ApproachWay,
+        is_pose: bool,
+        margins: Callable[[Mapping[str, Number]], Number],
+    ) -> None:
+        """Look how far a design is clear: a whole turn, or twice as far as a way goes.
 
-        `margins` gives those at values of a driver, (1, values).
+        Others will be asked for where the way was that to one pose, or the design was asked for before. `margins` gives
+        those at values of drivers, (1, values).
         """
-        design, values = _one_design(numbers), numbers.driver_values
-        ways = self._ways(*values.items()) if len(values) == 1 and numbers.extent == (1, 1) else None
-        if design is None or ways is None:
+        is_expected, self._last = is_pose or design == self._last, design
+        if design is None or not is_expected:
             return
-        ((name, value),) = values.items()
-        way, home = ways[0], value.item() - ways[0]
         explored = self._explored.get(design, (0.0, 0.0))
-        if explored[0] <= way <= explored[1]:
+        if explored[0] <= way.far <= explored[1]:
             return
-        is_angle = self.approach.reference.structure.driven_angles[name]
-        ends = (-0.5 * TURN, 0.5 * TURN) if is_angle else (min(explored[0], 2.0 * way), max(explored[1], 2.0 * way))
-        counts = [min(int(np.ceil(2.0 * abs(end) / spacing)), MOST) for end in ends]
-        ranges = [_clear_way(np.linspace(0.0, end, n + 1), lambda way: margins(name, home + way[None])[0])
-                  for end, n in zip(ends, counts, strict=True)]  # fmt: skip
-        if len(self._ranges) >= APPROACHES_KEPT:
-            self._ranges.clear()
+        ends = ((-0.5 * TURN, 0.5 * TURN) if way.is_angle
+                else (min(explored[0], 2.0 * way.far), max(explored[1], 2.0 * way.far)))  # fmt: skip
+        clear = [_clear_part(way.places(end, 0.5 * way.spacing), way, margins) for end in ends]
+        if len(self._clear) >= APPROACHES_KEPT:
+            self._clear.clear()
             self._explored.clear()
-        self._ranges[design], self._explored[design] = (ranges[0], ranges[1]), ends
-
-    def _ways(self, driver: tuple[str, Number]) -> tuple[float, float] | None:
-        """Return the least and the greatest way of a driver from where it is drawn; None where that is not one value.
-
-        An angle is drawn in the turn nearest to its first value.
-        """
-        name, value = driver
-        drawn = self.approach.drawn(name)
-        if drawn is None or np.ndim(drawn):
-            return None
-        home = float(drawn)
-        if self.approach.reference.structure.driven_angles[name]:
-            home += TURN * round((value.item(0) - home) / TURN)
-        return (value.item() - home,) * 2 if value.size == 1 else (float(value.min()) - home, float(value.max()) - home)
+        self._clear[design], self._explored[design] = (clear[0], clear[1]), ends
 
 
-def _clear_way(ways: Number, margins: Callable[[Number], Number]) -> float:
-    """Return how far the first of some ways are clear."""
-    unclear = np.flatnonzero(~(margins(ways) >= CLEAR))
-    return float(ways[max(int(unclear[0]) - 1, 0)] if len(unclear) else ways[-1])
+def _clear_part(places: Number, way: ApproachWay, margins: Callable[[Mapping[str, Number]], Number]) -> float:
+    """Return how far the first of some places are clear."""
+    found = margins({way.driver: way.home + places[None]})[0]
+    unclear = np.flatnonzero(~(found >= CLEAR))
+    return float(places[max(int(unclear[0]) - 1, 0)] if len(unclear) else places[-1])
 
 
 def _one_design(numbers: CallNumbers) -> tuple[float, ...] | None:
-    """Return the dimensions of the only design; None where there are several, or they vary along the motion."""
+    """Return the dimensions of the only design; None where there are several."""
     found = [value for one, value in numbers.given.items() if one.kind == DIMENSION]
     return tuple(value.item() for value in found) if all(value.size == 1 for value in found) else None
+
+
+def _vary_along_motion(numbers: CallNumbers) -> bool:
+    """Tell whether dimensions do."""
+    return any(value.shape[1] > 1 for one, value in numbers.given.items() if one.kind == DIMENSION)
 
 
 class DrawnApproach(ShortRepr):
@@ -403,11 +438,40 @@ class DrawnApproach(ShortRepr):
         """
         if self.is_passed(values):
             return None
+        if (only := self.way(values)) is not None:
+            return only.values if only.far else None
         designs, poses = np.broadcast_shapes(*(value.shape for value in values.values()))
         drives = {name: (value,) for name, value in values.items()}
         given = Inputs((designs, poses), self.reference.inputs.ends, drives)
         way = approach(*driver_path(self.reference.solving_order, given, self.shown.poses, self.shown.beside))
         return None if way is None else {name: np.atleast_2d(drive[0]) for name, drive in way.drives.items()}
+
+    def way(self, values: Mapping[str, Number]) -> ApproachWay | None:
+        """Return the way of the only driver to a motion of its own, so far 0 where that has its drawn value.
+
+        None where there are several drivers, or several values at which they are drawn, or where motions start.
+        """
+        if len(values) != 1:
+            return None
+        ((name, value),) = values.items()
+        drawn = self.drawn(name)
+        if drawn is None or np.ndim(drawn) or value.shape[0] > 1:
+            return None
+        low, high = (value.item(),) * 2 if value.size == 1 else (float(value.min()), float(value.max()))
+        is_angle = self.reference.structure.driven_angles[name]
+        below = above = float(drawn)
+        if is_angle:
+            below += TURN * ((low - below) // TURN)
+            above = below + TURN
+        if low <= above <= high:
+            home = end = above
+        else:
+            home, end = (above, high) if abs(above - high) < abs(low - below) else (below, low)
+        return ApproachWay(name, home, end - home, is_angle, self._spacings[name])
+
+    @cached_property
+    def _spacings(self) -> Mapping[str, float]:
+        return spacings(self.reference.solving_order)
 
     def drawn(self, name: str) -> Number | None:
         """Return the value at which a driver is drawn; None where it is not drawn."""

@@ -19,6 +19,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
+from itertools import cycle
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -104,6 +105,10 @@ def six_bar_rows() -> Iterator[Row]:
     yield from compared(f"six-bar, {LOOPED} poses, each", loop, LOOPED, 3, "program")
     few, one = np.linspace(0.0, 2 * np.pi, FEW), np.array([0.7])
     listed, earlier, at = few.tolist(), path(few, speed=six_bar.SPEED), few / six_bar.SPEED
+    # drawn beside it, so that each new design is looked at on its way from there
+    drawn = ck.compile(ck.load("six-bar"), POINT, free="crank.D.x")
+    arc = np.linspace(2.0, 4.0, FEW)
+    designs = cycle(14.0 + 0.01 * np.arange(50))
     calls = {
         "an array": lambda: path(few, speed=six_bar.SPEED),
         "a list": lambda: path(listed, speed=six_bar.SPEED),
@@ -111,6 +116,10 @@ def six_bar_rows() -> Iterator[Row]:
         "into an earlier result": lambda: path(few, speed=six_bar.SPEED, out=earlier),
         "one pose": lambda: path(one, speed=six_bar.SPEED),
         "a number": lambda: path(0.7, speed=six_bar.SPEED),
+        "an arc beside the drawing": lambda: drawn(arc, speed=six_bar.SPEED),
+        "an arc beside the drawing, of a new design": lambda: drawn(
+            arc, {"crank.D.x": next(designs)}, speed=six_bar.SPEED
+        ),
     }
     yield from compared(f"a call of the six-bar's program, {FEW} poses", calls, 1, 300, "an array")
 

@@ -352,17 +352,59 @@ def test_many_poses_are_those_of_few(path, poses):
 def test_one_pose_after_another_is_known_to_be_clear(monkeypatch):
     mechanism = loaded("six-bar")
     path = ck.compile(mechanism, OUTPUTS, free=["crank.D"])
-    searched = []
-    needed = LimitScreening.needed
-    monkeypatch.setattr(LimitScreening, "needed", lambda *given: searched.append(given) or needed(*given))
+    looks = looked_at(monkeypatch)
     for point in (14.0, 13.5):
-        searched.clear()
+        looks.clear()
         for value in np.linspace(0.2, 9.0, 40):
             found = path(value, {"crank.D": point})
             motion = ck.solve(path.mechanism({"crank.D": point}), value, modes=path.modes)
             np.testing.assert_allclose(found["G.position"], solved(motion, "G.position").item(), atol=1e-11)
-        # the first call is read in full, and finds how far this design is clear: a whole turn
-        assert len(searched) == 1
+        # the approach to the first pose, which may be read in full first, then how far this design is clear both ways
+        assert len(looks) <= 4
+
+
+def looked_at(monkeypatch):
+    """Return the approaches whose margins are looked at from now on."""
+    looks = []
+    early = LimitScreening._early
+    monkeypatch.setattr(LimitScreening, "_early", lambda *given: looks.append(given[-1]) or early(*given))
+    return looks
+
+
+@pytest.mark.parametrize("name", ["crank-rocker", "crank-shaper", "hand-pump"])
+def test_one_motion_after_another_beside_the_drawing_is_known_to_be_clear(name, monkeypatch):
+    mechanism = loaded(name)
+    (drive,), letter = mechanism.drives, list(mechanism.carriers)[-1]
+    path = ck.compile(mechanism, letter)
+    home = float(path.programs.approach.drawn(drive.name))
+    unit = 1.0 if path.programs.reference.structure.driven_angles[drive.name] else 0.02 * path.programs.reference.size
+    looks = looked_at(monkeypatch)
+    for begin in (0.2, 0.3, -0.5, 0.25, -0.4):
+        values = home + unit * (begin + np.linspace(0.0, 0.15, 9))
+        found = path(values)
+        motion = ck.solve(mechanism, values, modes=path.modes)
+        np.testing.assert_allclose(found[letter], motion.points[letter].position, atol=1e-11 * motion.size)
+    # the first is read in full, the second is looked at, and then how far the design is clear
+    assert len(looks) <= 6
+
+
+def test_the_way_from_the_drawing_is_the_shortest_one():
+    path = ck.compile(loaded("crank-rocker"), "C")
+    approach = path.programs.approach
+    drawn = float(approach.drawn("crank"))
+    rng = np.random.default_rng(4)
+    for _ in range(300):
+        first, last = drawn + rng.uniform(-9.0, 9.0, 2)
+        values = np.linspace(first, last, 5)[None] if abs(last - first) < 6.0 else np.array([[first]])
+        if approach.is_passed({"crank": values}):
+            continue
+        way = approach.way({"crank": values})
+        # any turn of the drawing, to any of the values
+        turns = drawn + 2.0 * np.pi * np.arange(-4, 5)
+        shortest = np.abs(values.ravel()[:, None] - turns).min()
+        assert abs(way.far) == pytest.approx(shortest, abs=1e-12)
+        assert np.sin(0.5 * (way.home - drawn)) == pytest.approx(0.0, abs=1e-12)
+        assert np.abs(values - way.values["crank"][0, -1]).min() < 1e-12
 
 
 @pytest.mark.filterwarnings("ignore")

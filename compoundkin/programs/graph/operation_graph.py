@@ -9,7 +9,7 @@ from __future__ import annotations
 import struct
 import threading
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import frexp, inf, nan
 from typing import Any, NamedTuple
 
@@ -86,8 +86,7 @@ REDUCTIONS: dict[str, Callable[..., Any]] = {TOTAL: np.add.reduce, LEAST: np.min
 CONSTANT, INPUT = "constant", "input"
 
 
-@dataclass(frozen=True)
-class InputNumber:
+class InputNumber(NamedTuple):
     """One real number that a program is given.
 
     It has its kind, what it is of, and which part of that.
@@ -257,7 +256,7 @@ def start_of(seed: InputNumber) -> InputNumber:
     >>> start_of(InputNumber("seed", "group 2", "0")).part
     'start 0'
     """
-    return replace(seed, part=f"start {seed.part}")
+    return seed._replace(part=f"start {seed.part}")
 
 
 def simplified(graph: OperationGraph, operation: str, operands: tuple[int, ...]) -> int | None:
