@@ -133,17 +133,16 @@ class LimitScreening(ShortRepr):
         )
 
     def _is_approached(self, values: Mapping[str, Number], numbers: CallNumbers) -> bool:
-        """Tell whether the only design is clear of limits on the approach to a motion."""
-        way = self.approach.way(values)
-        if way is None:
-            return False
-        design = _one_design(numbers)
-        if not way.far or self._clear.has(design, way):
+        """Tell whether designs are surely clear of limits on the approach to a motion."""
+        way, design = self.approach.way(values), _one_design(numbers)
+        if way is not None and self._clear.has(design, way):
             return True
-        if _vary_along_motion(numbers):
-            return False
-        is_clear = bool(np.all(self._early(numbers, way.values) >= NEAR))
-        self._clear.explore(design, way, numbers.extent[1] == 1, partial(self._early, numbers))
+        approach = self.approach.values(values) if way is None else way.values
+        if approach is None or _vary_along_motion(numbers):
+            return approach is None
+        is_clear = bool(np.all(self._early(numbers, approach) >= NEAR))
+        if way is not None:
+            self._clear.explore(design, way, numbers.extent[1] == 1, partial(self._early, numbers))
         return is_clear
 
     @cached_property
@@ -348,14 +347,18 @@ class ApproachWay(NamedTuple):
     spacing: float
 
     @property
-    def values(self) -> Mapping[str, Number]:
-        """The driver's values on it, (1, values)."""
-        return {self.driver: self.home + self.places(self.far, self.spacing)[None]}
+    def values(self) -> Mapping[str, Number] | None:
+        """The driver's values on it, (1, values); None where it is no way at all."""
+        return {self.driver: self.home + self.places(self.far, self.spacing)[None]} if self.far else None
 
     def places(self, far: float, spacing: float) -> Number:
         """Return places from home on."""
-        count = min(int(np.ceil(abs(far) / spacing)), MOST)
-        return np.linspace(0.0, far, max(count, 1 if self.is_angle else FEWEST) + 1)
+        return np.linspace(0.0, far, max(_steps(abs(far), spacing), 1 if self.is_angle else FEWEST) + 1)
+
+
+def _steps(length: float, spacing: float) -> int:
+    """Return into how many steps a way is divided."""
+    return min(int(np.ceil(length / spacing)), MOST)
 
 
 class ClearApproaches(ShortRepr):
@@ -371,8 +374,8 @@ class ClearApproaches(ShortRepr):
 
     def has(self, design: tuple[float, ...] | None, way: ApproachWay) -> bool:
         """Tell whether a way is over values that are known to be clear."""
-        known = None if design is None else self._clear.get(design)
-        return known is not None and known[0] <= way.far <= known[1]
+        known = (0.0, 0.0) if design is None else self._clear.get(design, (0.0, 0.0))
+        return known[0] <= way.far <= known[1]
 
     def explore(
         self,
@@ -439,12 +442,36 @@ class DrawnApproach(ShortRepr):
         if self.is_passed(values):
             return None
         if (only := self.way(values)) is not None:
-            return only.values if only.far else None
+            return only.values
+        if all(value.size == 1 for value in values.values()) and self._is_shown(values):
+            return self._to_pose(values)
         designs, poses = np.broadcast_shapes(*(value.shape for value in values.values()))
         drives = {name: (value,) for name, value in values.items()}
         given = Inputs((designs, poses), self.reference.inputs.ends, drives)
         way = approach(*driver_path(self.reference.solving_order, given, self.shown.poses, self.shown.beside))
         return None if way is None else {name: np.atleast_2d(drive[0]) for name, drive in way.drives.items()}
+
+    def _to_pose(self, values: Mapping[str, Number]) -> Mapping[str, Number] | None:
+        """Return the values of several drivers on the approach to one pose; None where it is as drawn.
+
+        All go straight on, angles the short way.
+        """
+        homes, ways = dict[str, float](), dict[str, float]()
+        for name, value in values.items():
+            drawn = self.drawn(name)
+            way = 0.0 if drawn is None else value.item() - float(np.ravel(drawn)[0])
+            ways[name] = way - TURN * round(way / TURN) if self.reference.structure.driven_angles[name] else way
+            homes[name] = value.item() - ways[name]
+        count = max(_steps(abs(way), self._spacings[name]) for name, way in ways.items())
+        shares = np.linspace(0.0, 1.0, count + 1)[None]
+        return {name: homes[name] + way * shares for name, way in ways.items()} if any(ways.values()) else None
+
+    def _is_shown(self, values: Mapping[str, Number]) -> bool:
+        """Tell whether all drivers are drawn on the side of one pose: a drawn length may have either sign."""
+        angles = self.reference.structure.driven_angles
+        shown = {name: self.drawn(name) for name in values if not angles[name]}
+        return all(drawn is None or float(np.ravel(drawn)[0]) * values[name].item() >= 0.0
+                   for name, drawn in shown.items())  # fmt: skip
 
     def way(self, values: Mapping[str, Number]) -> ApproachWay | None:
         """Return the way of the only driver to a motion of its own, so far 0 where that has its drawn value.

@@ -388,6 +388,39 @@ def test_one_motion_after_another_beside_the_drawing_is_known_to_be_clear(name, 
     assert len(looks) <= 6
 
 
+@pytest.mark.parametrize("name", ["five-bar", "five-bar-led", "excavator-arm", "pantograph"])
+@pytest.mark.filterwarnings("ignore")
+def test_a_pose_of_several_drivers_is_that_of_solve(name):
+    mechanism = loaded(name)
+    letter = list(mechanism.carriers)[-1]
+    path = ck.compile(mechanism, letter)
+    own, angles = path.programs.reference, path.programs.reference.structure.driven_angles
+    start = {drive.name: float(np.ravel(own.inputs.drives[drive.name][0])[0]) for drive in mechanism.drives}
+    rng = np.random.default_rng(7)
+    several = 0
+    for _ in range(25):
+        values = {
+            key: one + rng.uniform(-0.6, 0.6) * (1.0 if angles[key] else 0.2 * own.size) for key, one in start.items()
+        }
+        found, assembled = path(values), False
+        with contextlib.suppress(ck.errors.NotAssembled):
+            motion = ck.solve(mechanism, values)
+            assembled = bool(np.all(motion.assembled))
+        assert bool(found.assembled) == assembled
+        if assembled:
+            several += 1
+            np.testing.assert_allclose(found[letter], motion.points[letter].position, atol=1e-10 * motion.size)
+            # the same looked at along the drivers' path, as motions are
+            approach = path.programs.approach
+            columns = {key: np.array([[value]]) for key, value in values.items()}
+            straight = approach.values(columns)
+            whole = approach.values({key: np.repeat(value, 2, axis=1) for key, value in columns.items()})
+            for key in straight:
+                for end in (0, -1):
+                    assert straight[key][0, end] == pytest.approx(whole[key][0, end], abs=1e-9)
+    assert several >= 5
+
+
 def test_the_way_from_the_drawing_is_the_shortest_one():
     path = ck.compile(loaded("crank-rocker"), "C")
     approach = path.programs.approach
