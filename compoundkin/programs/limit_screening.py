@@ -296,14 +296,17 @@ def _with_driver_values(
     given = {one: value for one, value in numbers.given.items() if one.kind != DRIVE}
     for name, value in values.items():
         given[InputNumber(DRIVE, name, "0")] = value
-        given[InputNumber(DRIVE, name, "1")] = np.broadcast_to(speeds[name], value.shape)
+        given[InputNumber(DRIVE, name, "1")] = speeds[name]
     poses = max(value.shape[1] for value in values.values())
-    return replace(numbers, given=given, shape=(numbers.extent[0], poses))
+    return CallNumbers(given, (numbers.extent[0], poses), numbers.still)
+
+
+REST = np.zeros((1, 1))
 
 
 def _resting(numbers: CallNumbers, values: Mapping[str, Number]) -> CallNumbers:
     """Return the same dimensions with drivers that rest at other values."""
-    return _with_driver_values(numbers, values, dict.fromkeys(values, np.zeros((1, 1))))
+    return _with_driver_values(numbers, values, dict.fromkeys(values, REST))
 
 
 # Between two poses a discriminant may touch zero where the cubic through both falls below this part of the lesser.
@@ -428,6 +431,7 @@ class DrawnApproach(ShortRepr):
     def __init__(self, reference: Motion, shown: StatedModes) -> None:
         self.reference, self.shown = reference, shown
         self._drawn: dict[str, Number | None] = {}
+        self._homes: dict[str, float | None] = {}
 
     @cached_property
     def has_configuration(self) -> bool:
@@ -458,20 +462,25 @@ class DrawnApproach(ShortRepr):
         """
         homes, ways = dict[str, float](), dict[str, float]()
         for name, value in values.items():
-            drawn = self.drawn(name)
-            way = 0.0 if drawn is None else value.item() - float(np.ravel(drawn)[0])
+            home = self._home(name)
+            way = 0.0 if home is None else value.item() - home
             ways[name] = way - TURN * round(way / TURN) if self.reference.structure.driven_angles[name] else way
             homes[name] = value.item() - ways[name]
         count = max(_steps(abs(way), self._spacings[name]) for name, way in ways.items())
-        shares = np.linspace(0.0, 1.0, count + 1)[None]
+        shares = np.arange(count + 1)[None] / max(count, 1)
         return {name: homes[name] + way * shares for name, way in ways.items()} if any(ways.values()) else None
 
     def _is_shown(self, values: Mapping[str, Number]) -> bool:
         """Tell whether all drivers are drawn on the side of one pose: a drawn length may have either sign."""
         angles = self.reference.structure.driven_angles
-        shown = {name: self.drawn(name) for name in values if not angles[name]}
-        return all(drawn is None or float(np.ravel(drawn)[0]) * values[name].item() >= 0.0
-                   for name, drawn in shown.items())  # fmt: skip
+        return all(angles[name] or (self._home(name) or 0.0) * value.item() >= 0.0 for name, value in values.items())
+
+    def _home(self, name: str) -> float | None:
+        """Return the value at which a driver is drawn at the first pose."""
+        if name not in self._homes:
+            drawn = self.drawn(name)
+            self._homes[name] = None if drawn is None else float(np.ravel(drawn)[0])
+        return self._homes[name]
 
     def way(self, values: Mapping[str, Number]) -> ApproachWay | None:
         """Return the way of the only driver to a motion of its own, so far 0 where that has its drawn value.
