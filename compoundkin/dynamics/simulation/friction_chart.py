@@ -37,6 +37,7 @@ from compoundkin.dynamics.friction.friction_contacts import (
 )
 from compoundkin.dynamics.simulation.body_chart import NO_MASS, BodyChart, BodyState
 from compoundkin.dynamics.simulation.driver_state import Rates, needs_time
+from compoundkin.dynamics.simulation.friction_table import RELEASE_SAMPLES, released_between
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.attachments import Effort
 from compoundkin.model.pairs import Pair
@@ -62,8 +63,6 @@ STEP = 1e-3
 MOST_CHANGES = 40
 # Flanks of teeth are those of the solution after so many tries at most.
 FLANKS = 4
-# The release of a mechanism at rest is searched at so many times, and found to this part of the time.
-RELEASE_SAMPLES, RELEASED = 200, 1e-12
 # Forces that equilibrium leaves open have more than this part of a state of self-stress.
 UNDETERMINED = 1e-6
 
@@ -352,11 +351,9 @@ class FrictionChart(BodyChart):
             early = late
         else:
             return until
-        while late - early > RELEASED * until:
-            middle = (early + late) / 2.0
-            early, late = (early, middle) if moves(middle) else (middle, late)
+        found = released_between(moves, early, late, until)
         self.begun = False
-        return float(late)
+        return found
 
     @property
     def memory(self) -> tuple[Any, ...]:
