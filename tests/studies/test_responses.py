@@ -98,6 +98,24 @@ def test_figures_do_not_move_with_the_grid(beside: float) -> None:
         assert np.abs(place - end.at.place).max() < 1e-8
 
 
+def test_angles_of_more_than_a_turn_are_continuous_between_the_poses() -> None:
+    """The other crank of a drag link swings about the driven one: it turns as far, and is greatest between poses."""
+    drag = ck.Mechanism(
+        "Drag link", ck.link("frame", A=0, D=1), ck.link("crank", A=0, B=3), ck.link("coupler", B=0, C=2.5),
+        ck.link("other", D=0, C=3), ck.drive("crank"), ck.mode(1, "coupler"),
+    )  # fmt: skip
+    # there and back, so that both ends of the swing are in the motion
+    values = 7.0 * np.sin(np.linspace(0.0, np.pi, 97)) ** 2
+    path, (response,) = studied_path(drag, ["crank.B.x"], ["other.angle.stroke"], values)
+    lengths = np.array([2.8, 3.0, 3.2])
+    found = response.values(path.designs({"crank.B.x": lengths}))
+    for length, one in zip(lengths, found, strict=True):
+        ends = ck.solve(path.compiled.mechanism({"crank.B.x": length}), np.linspace(0.0, 7.0, 3601))
+        angle = ck.quantity(ends, "other.angle").values
+        assert abs(one - np.ptp(angle)) < 1e-9
+        assert one > 2.0 * np.pi
+
+
 def test_figures_in_time_follow_the_laws_between_the_poses() -> None:
     times = np.linspace(0.0, 2.0 * np.pi / 3.0, 25)
     designs, response = given("bar.angle.stroke", 0.0, time=times, speed=3.0)

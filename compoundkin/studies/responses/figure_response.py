@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -38,6 +39,20 @@ class CourseExtreme(ShortRepr):
     place: Number
 
 
+class SampledCourse(NamedTuple):
+    """A course of each design, `parts` samples from pose to pose; `greatest` and `least` are their numbers."""
+
+    parts: int
+    values: Number
+    greatest: Number
+    least: Number
+
+    @property
+    def negative(self) -> SampledCourse:
+        """The same with the other sign."""
+        return SampledCourse(self.parts, -self.values, self.least, self.greatest)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class CourseSearch(ShortRepr):
     """A search for the greatest values of a course times a `sign`, between the poses too.
@@ -54,26 +69,29 @@ class CourseSearch(ShortRepr):
     def extreme(self) -> CourseExtreme:
         """Return the greatest values, times the sign."""
         with np.errstate(all="ignore"):
-            value, place = self._searched(*self._course())
+            course = self.designs.computed_once((SampledCourse, self.name), self._course)
+            value, place = self._searched(course if self.sign > 0.0 else course.negative)
         value = np.where(assembled_range(self.designs).assembled, self.sign * value, np.nan)
         return CourseExtreme(value, np.where(np.isnan(value), np.nan, place))
 
-    def _course(self) -> tuple[int, Number]:
-        """Return the course, and in how many parts the steps between poses are cut for it."""
+    def _course(self) -> SampledCourse:
+        """Return the course at the poses, or in a motion that has few between them too."""
         number, poses = self.designs.number, self.designs.poses
         parts = refinement_parts(poses)
         if parts == 1:
             course = np.broadcast_to(self.designs.outputs[self.name], (number, poses))
-            return 1, -course if self.sign < 0.0 else course
-        places = np.broadcast_to(refined_samples(poses), (number, parts * (poses - 1) + 1))
-        return parts, self.sign * self.designs.values_at(self.name, np.arange(number), places, self.is_angle)
-
-    def _searched(self, parts: int, course: Number) -> tuple[Number, Number]:
-        """Return the greatest values and their places: of samples, and of peaks in the windows around them."""
+        else:
+            places = np.broadcast_to(refined_samples(poses), (number, parts * (poses - 1) + 1))
+            course = self.designs.values_at(self.name, np.arange(number), places, self.is_angle)
         # places of extremes are found in less time than their values
-        every, k = np.arange(len(course)), course.argmax(axis=1)
+        return SampledCourse(parts, course, course.argmax(axis=1), course.argmin(axis=1))
+
+    def _searched(self, sampled: SampledCourse) -> tuple[Number, Number]:
+        """Return the greatest values and their places: of samples, and of peaks in the windows around them."""
+        parts, course, k, low = sampled
+        every = np.arange(len(course))
         begin, flat = every * course.shape[1], np.ravel(course)
-        best, least = flat.take(begin + k), flat.take(begin + course.argmin(axis=1))
+        best, least = flat.take(begin + k), flat.take(begin + low)
         largest = np.maximum(np.abs(best), np.abs(least))
         offers = [Offers(every, best, k / parts)]
         rows, k = _peaks(course, best)
