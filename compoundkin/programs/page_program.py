@@ -17,11 +17,12 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem
+from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.groups.pair_sides import Reason
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import residual
 from compoundkin.model.attributes import OF_LINKS
-from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
+from compoundkin.model.pairs.profile_contact import Approach, ProfileContact, as_profile_contact
 from compoundkin.programs.backends.tape_program import Instruction, allocate_rows
 from compoundkin.programs.dimensions import FreeDimension, StatedDimensions, mechanism_with
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, node_strata
@@ -123,6 +124,20 @@ class PageProgram(ShortRepr):
         """The contacts with profiles that it depends on."""
         names = dict.fromkeys(one.name for one in self._inputs if one.kind == SEED)
         return tuple(SearchedContact.of(self.mechanism, name) for name in names if name in self.mechanism.order.pairs)
+
+    @cached_property
+    def followers(self) -> tuple[SearchedFollower, ...]:
+        """The groups whose contacts are found anew at each pose, as `solve` does."""
+        contacts = {one.name: one for one in self.contacts}
+        signed = [one for one in self.mechanism.order.solvers if one.index in self.mechanism.recording.signs]
+        ways = ((solver, solver.approach(self.mechanism.block)) for solver in signed)
+        return tuple(
+            SearchedFollower.of(self, contacts[pair.name], solver, approach)
+            for solver, approach in ways
+            if approach
+            for pair in solver.group.outer
+            if pair.name in contacts
+        )
 
     @cached_property
     def signs(self) -> Mapping[InputNumber, int]:
@@ -232,12 +247,13 @@ class PageProgram(ShortRepr):
         closing, places, rates = self._results
         carried = (one.now.x for part in self.carried for one in part)
         aims = (part.x for one in self.contacts for part in (one.aim.real, one.aim.imag))
+        paths = (node for one in self.followers for node in one.nodes)
         reasons = (node for each in self.reasons for one in each for node in (one.holds, *one.words))
         told = _once(node for node in reasons if isinstance(node, int))
         shown = {one.inputs[0]: None for one in self.dimensions}
         free = self.mechanism.recording.free
         known = {one.inputs[0]: float(np.ravel(self.stated.own(one))[0]) for one in free if one.inputs[0] not in shown}
-        sections = _once((*closing, *carried, *aims)), places, rates, told, _once(self.more)
+        sections = _once((*closing, *carried, *aims, *paths)), places, rates, told, _once(self.more)
         return operation_table(
             self.mechanism.graph, sections, tuple(shown), (*self.drives, *self.seeds, *self.rows), known
         )
@@ -273,6 +289,44 @@ class SearchedContact(ShortRepr):
         for k, one in enumerate(curve.expansion(s, order)):
             found |= {InputNumber(SEED, self.name, f"x{k}"): one.real, InputNumber(SEED, self.name, f"y{k}"): one.imag}
         return found
+
+
+@dataclass(frozen=True, repr=False)
+class SearchedFollower(ShortRepr):
+    """A follower whose contact is found where its path meets the whole profile.
+
+    Whoever runs the program searches it: `start`, `centre` and `toward` are those of the approach, in the profile's
+    frame. The coordinate found, the greatest or the least, is the state of the group in `index`.
+    """
+
+    contact: SearchedContact
+    index: int
+    straight: bool
+    start: RecordedNumber
+    centre: RecordedNumber
+    toward: RecordedNumber
+    sense: float
+    is_greatest: bool
+
+    @classmethod
+    def of(
+        cls, program: PageProgram, contact: SearchedContact, solver: GroupSolver, approach: Approach
+    ) -> SearchedFollower:
+        """Return the follower of a contact in the mode of the program."""
+        path, number = approach.path, program.mechanism.number
+        # which way it goes is a matter of its pair alone: +1 or -1 at all poses
+        at = int(np.argmax(np.ravel(program.motion.assembled)))
+        turns = [number(one).x for one in (path.sense, approach.sign)]
+        sense, sign = (float(np.sign(np.ravel(one)[0])) for one in program.own(turns, np.array([at])))
+        greatest = sign * program.mechanism.recording.signs[solver.index] > 0
+        numbers = (number(path.start), number(path.centre), number(approach.toward))
+        return cls(contact, solver.index, path.straight, *numbers, sense, greatest)
+
+    @property
+    def nodes(self) -> tuple[int, ...]:
+        """The nodes of what it is searched by."""
+        parts = (part for one in (self.start, self.centre) for part in (one.real.x, one.imag.x))
+        return (*parts, self.toward.x, *(() if self.toward.y is None else (self.toward.y,)))
 
 
 def _once(nodes: Iterable[int]) -> tuple[int, ...]:

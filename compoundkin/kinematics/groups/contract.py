@@ -19,6 +19,7 @@ from compoundkin.kinematics.groups.force_transmission import reactions_of
 from compoundkin.kinematics.groups.group_equations import GroupEquations
 from compoundkin.kinematics.groups.pair_sides import MountedBody, Reason, reason_text
 from compoundkin.model.pairs.contract import Ends
+from compoundkin.model.pairs.profile_contact import Approach
 from compoundkin.structure.mobility_count import Group
 
 
@@ -139,6 +140,13 @@ class GroupSolver(ABC):
     def state(self, block: Block) -> Sequence[Number]:
         """Return the numbers by which an assembled group is found again, if any."""
         return ()
+
+    def approach(self, block: Block) -> Approach | None:
+        """Return how its member comes to a profile, where a state is a contact that can be searched anew.
+
+        The links around the group are known in the block. It is None where states can only be followed.
+        """
+        return None
 
     def side(self, block: Block, state: Sequence[Number]) -> Number:
         """Return a number whose sign changes across a singularity."""

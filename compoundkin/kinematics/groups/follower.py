@@ -22,7 +22,7 @@ from compoundkin.kinematics.groups.general import GeneralSolver
 from compoundkin.kinematics.groups.group_equations import CLOSED
 from compoundkin.kinematics.groups.pair_sides import MountedBody, Reason, alone
 from compoundkin.model.pairs.contract import Drivable, Ends, Poses, as_drivable, lower_equivalent
-from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
+from compoundkin.model.pairs.profile_contact import Approach, Freedom, ProfileContact, as_profile_contact
 from compoundkin.structure.mobility_count import Group
 
 # The members' poses where the body's coordinate is the one given.
@@ -76,14 +76,17 @@ class FollowerSolver(GroupSolver):
 
     def close(self, block: Block, mode: Number) -> None:
         """Assemble the group and add its links to what is known."""
-        ends = block.ends[self.pair.name]
         leading = self.mounted.leading(block)
-        at_zero, freedom = self.mounted.poses(leading, constant(0.0)), self.mounted.freedom(leading)
-        other, one = self.pair.contact_candidates(ends, at_zero, self.own, freedom)
+        other, one = self.pair.contact_candidates(*self._before(leading))
         start = np.where(mode > 0, one, other)
         found, closed, slope = self._polished(block, lambda q: self.mounted.poses(leading, q), start)
         block.fail(closed, self.index)
         self._published(block, found, slope)
+
+    def _before(self, leading: Block) -> tuple[Ends, Poses, int, Freedom]:
+        """Return what contacts are searched by: the pair where the coordinate is zero, and how its member moves."""
+        poses = self.mounted.poses(leading, constant(0.0))
+        return leading.ends[self.pair.name], poses, self.own, self.mounted.freedom(leading)
 
     @property
     def is_angular(self) -> bool:
@@ -173,6 +176,10 @@ class FollowerFromState(FollowerSolver):
 
     One step of Newton, and no search.
     """
+
+    def approach(self, block: Block) -> Approach:
+        """Return how it comes to its profile: who does not carry its coordinate searches it by that."""
+        return self.pair.approach(*self._before(self.mounted.leading(block)))
 
     def side(self, block: Block, state: Sequence[Number]) -> Number:
         """Return the slope of the contact's distance by the coordinate: zero where the two contacts of a path meet."""

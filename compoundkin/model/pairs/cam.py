@@ -19,7 +19,14 @@ from compoundkin.model.pairs.arc import ArcSlot
 from compoundkin.model.pairs.contact import FrictionContact, Touch, centre_of_curvature, passing_rates
 from compoundkin.model.pairs.contract import DimensionFit, Ends, Equivalent, Guided, Osculation, Poses
 from compoundkin.model.pairs.loop_terms import LoopTerms, ProfileVector, Sum, Unknown, angle_of
-from compoundkin.model.pairs.profile_contact import THINNED, Freedom, ProfileContact, path_crossings, relative_path
+from compoundkin.model.pairs.profile_contact import (
+    THINNED,
+    Approach,
+    Freedom,
+    ProfileContact,
+    path_crossings,
+    relative_path,
+)
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Stud, Wheel
 from compoundkin.model.profiles import Profile, side_of
 
@@ -181,12 +188,16 @@ class Cam(ProfileContact, Guided, FrictionContact):
 
         On a slide it is farthest along the guide in mode +1; on a pin most clockwise, as with a bar for the profile.
         """
+        path, away, sign = self.approach(ends, poses, own, freedom)
+        least, greatest = path_crossings(path, self._samples, away, self.turns)
+        return np.where(sign > 0, least, greatest), np.where(sign > 0, greatest, least)
+
+    def approach(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> Approach:
+        """Return the path of the roller's middle, and the parallel curve that it meets."""
         side = poses[0].carry(ends[0])
         path = relative_path(Pose(as_series(side.point), side.along), poses[1].at(ends[1].point).c[0], own, freedom)
-        away = np.asarray(ends[1].measure) * self.outward
-        least, greatest = path_crossings(path, self._samples, away, self._turns)
-        forward = (freedom.sense > 0) == path.straight
-        return np.where(forward, least, greatest), np.where(forward, greatest, least)
+        sign = freedom.sense if path.straight else -freedom.sense
+        return Approach(path, ends[1].measure * self.outward, sign)
 
     def no_contact_reason(self) -> str:
         """Return the message that the path does not meet the profile."""

@@ -29,7 +29,14 @@ from compoundkin.model.pairs.loop_terms import (
     rotated,
 )
 from compoundkin.model.pairs.prismatic import Prismatic
-from compoundkin.model.pairs.profile_contact import THINNED, Freedom, ProfileContact, face_tangencies, relative_path
+from compoundkin.model.pairs.profile_contact import (
+    THINNED,
+    Approach,
+    Freedom,
+    ProfileContact,
+    face_tangencies,
+    relative_path,
+)
 from compoundkin.model.pairs.revolute import Revolute
 from compoundkin.model.pairs.symbols import Mark, Outline, Track, known_range
 from compoundkin.model.profiles import Profile, side_of
@@ -164,17 +171,21 @@ class Face(ProfileContact, FrictionContact):
 
         On a pin the contact may lie in the direction of the face (mode +1) or against it, as with a block on it.
         """
-        frame, face = self._sides(ends, poses)
-        path = relative_path(frame, face.point.c[0], own, freedom)
-        facing = np.conjugate(frame.u.c[0]) * self._normal(face).c[0]
+        path, facing, _ = self.approach(ends, poses, own, freedom)
         if path.straight:
-            reach = self.curve.at(self._support(frame, face).c[0]).c[0] - path.start
+            reach = self.curve.at(self.curve.support(facing).c[0]).c[0] - path.start
             rise = dot(facing, path.centre)
             found = path.sense * dot(facing, reach) / np.where(np.abs(rise) < ALONG, np.nan, rise)
             return found, found
-        right, left = face_tangencies(path, self._samples, facing, self._turns)
+        right, left = face_tangencies(path, self._samples, facing, self.turns)
         against, along = (right, left) if self.side > 0 else (left, right)
         return path.sense * against, path.sense * along
+
+    def approach(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> Approach:
+        """Return the path of the face's point, and the normal of the face."""
+        frame, face = self._sides(ends, poses)
+        path = relative_path(frame, face.point.c[0], own, freedom)
+        return Approach(path, np.conjugate(frame.u.c[0]) * self._normal(face).c[0], float(self.side))
 
     def no_contact_reason(self) -> str:
         """Return the message that the face does not reach the profile."""

@@ -106,6 +106,10 @@ class ProfileContact(Contact):
         return spans(curve.samples, curve.low, curve.high, self._beside_roller) if self.roller else ()
 
     @abstractmethod
+    def approach(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> Approach:
+        """Return how a member of one freedom comes to the profile; `poses` are those where its coordinate is zero."""
+
+    @abstractmethod
     def contact_candidates(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> tuple[Number, Number]:
         """Return approximate coordinates of the contacts of a member of one freedom, in mode -1 and +1.
 
@@ -127,7 +131,7 @@ class ProfileContact(Contact):
         return tuple(float(self.curve.wrapped(0.5 * (a + b))) for a, b in self.bridged)
 
     @property
-    def _turns(self) -> float:
+    def turns(self) -> float:
         """+1 for a closed profile that goes counterclockwise, -1 for a clockwise one, 0 for an open one."""
         return side_of(self.curve) if self.curve.closed else 0.0
 
@@ -194,6 +198,19 @@ class PointPath(NamedTuple):
             return self.sense * (self.centre.real * gap.real + self.centre.imag * gap.imag)
         arm = self.start - self.centre
         return self.sense * nearest_angle((place - self.centre) / arm, (middle - self.centre) / arm)
+
+
+class Approach(NamedTuple):
+    """How a member of one freedom comes to a profile: what its contacts are searched by.
+
+    `toward` is how far from the profile the middle of a roller runs, on the side of the profile's normal; of a face its
+    normal where the coordinate is zero. `sign` is that of the mode in which the contact at the greatest coordinate
+    closes, the sense of the path apart for a face on a pin.
+    """
+
+    path: PointPath
+    toward: Number
+    sign: Number
 
 
 def nearest_angle(of: Number, middle: Number) -> Number:

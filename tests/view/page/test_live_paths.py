@@ -19,7 +19,7 @@ from compoundkin.view.page.html_document import asset
 from compoundkin.view.page.live.live_data import live_data
 from compoundkin.view.report.pose_sample import Sample
 
-SCRIPTS = ("numbers.js", "live/machine.js", "live/states.js", "live/path.js")
+SCRIPTS = ("numbers.js", "live/machine.js", "live/follower.js", "live/states.js", "live/path.js")
 # Dyads of all kinds, gears, belts, racks, rolling, slots with ends, cylinders, several drivers, a group of class III,
 # change points that other lengths take away.
 MECHANISMS = (
@@ -31,13 +31,13 @@ MECHANISMS = (
     "groove-cam-plate", "constant-breadth-yoke",
 )  # fmt: skip
 DRAGS, POSES = 100, 19
-# Drags as they come, one after another: each from where the one before has led.
-DRAGGED = """(jobs) => JSON.stringify(JSON.parse(jobs).map(({ data, designs }) => {
-  const path = new window.compoundkin.Path(data);
-  let near = path.solved(path.own);
+# Drags as they come, one after another: each from where the one before has led, or from the mechanism as it was.
+DRAGGED = """(jobs) => JSON.stringify(JSON.parse(jobs).map(({ data, designs, single }) => {
+  const path = new window.compoundkin.Path(data), own = path.solved(path.own);
+  let near = own;
   const every = [], failed = [], words = [];
   for (const numbers of designs) {
-    near = path.solved(Float64Array.from(numbers), near);
+    near = path.solved(Float64Array.from(numbers), single ? own : near);
     for (const { x, y, angle, v, a } of near.links) every.push(x, y, angle, ...v, ...a);
     failed.push([...near.failed]);
     words.push(failed.at(-1).map((_, k) => path.why(near.numbers, near, k)));
@@ -66,14 +66,14 @@ class Dragged:
         self.dimensions = self.data["live"]["dimensions"]
         self.radii = np.array([one["word"] == "radius" for one in self.dimensions])
         self.own = np.array([one["value"] for one in self.dimensions])
+        kinds = [one["kind"] for one in self.dimensions]
+        units = {"angle": 1.0, "length": self.motion.size, "point": self.motion.size}
+        self.scale = np.array([units.get(kind, v) for kind, v in zip(kinds, self.own, strict=True)])
         self.designs = np.array([*self._walk()])
 
     def _walk(self) -> Iterator[Number]:
         """Steps of two dimensions at a time; every fourth goes halfway back."""
-        rng, size = np.random.default_rng(7), self.motion.size
-        own = self.own
-        kinds = [one["kind"] for one in self.dimensions]
-        scale = np.array([{"angle": 1.0, "ratio": v}.get(kind, size) for kind, v in zip(kinds, own, strict=True)])
+        rng, own, scale = np.random.default_rng(7), self.own, self.scale
         at = own.copy()
         for k in range(DRAGS):
             at = own + (at - own) / 2.0 if k % 4 == 3 else at.copy()
@@ -81,6 +81,13 @@ class Dragged:
             at[some] += 0.03 * scale[some] * rng.standard_normal(2)
             # a page takes no negative radius
             yield np.where(self.radii, np.abs(at), at)
+
+    def leaps(self) -> Number:
+        """Changes of one dimension by up to 60 % of the size, each of the mechanism as it was."""
+        rng = np.random.default_rng(11)
+        leap = np.where(np.arange(len(self.own)) == rng.integers(len(self.own), size=(DRAGS, 1)), 0.6 * self.scale, 0.0)
+        found = self.own + leap * rng.choice([-1.0, 1.0], (DRAGS, 1)) * rng.uniform(0.3, 1.0, (DRAGS, 1))
+        return np.where(self.radii, np.abs(found), found)
 
     def solved(self) -> Motion:
         """The same designs as `solve` finds them."""
@@ -145,6 +152,24 @@ def test_the_browser_finds_what_solve_finds(name: str, found: dict[str, Any]) ->
         assert said["group"] == (gap.pair or f"{gap.group}({', '.join(gap.links)})")
         # whether a group without a closed form comes back after a gap is found out by `gaps` alone
         assert gap.reason == said["text"] or gap.reason.startswith(f"{said['text']}; ")
+
+
+def test_a_contact_is_found_as_solve_finds_it_however_far_a_dimension_leaps(browser: Any) -> None:
+    names = ("oscillating-roller-follower", "oscillating-flat-follower", "groove-cam-plate")
+    view, dragged = with_paths(browser), [Dragged(name) for name in names]
+    for one in dragged:
+        one.designs = one.leaps()
+    jobs = [{"data": one.data, "designs": one.designs.tolist(), "single": True} for one in dragged]
+    for one, told in zip(dragged, json.loads(view.evaluate(DRAGGED, json.dumps(jobs))), strict=True):
+        with warnings.catch_warnings(action="ignore"):
+            motion = one.solved()
+        assert np.array_equal(np.array(told["failed"]), motion.failed)
+        rows = np.frombuffer(b64decode(told["rows"])).reshape(DRAGS, -1, 3, 3, motion.failed.shape[1])
+        rest = rows - expected(motion, one.links).reshape(rows.shape)
+        assert np.nanmax(np.abs(rest[:, :, 0, :2])) < 1e-9 * motion.size
+        turned = rest[:, :, 0, 2]
+        assert np.nanmax(np.abs(turned - 2.0 * np.pi * np.rint(turned / (2.0 * np.pi)))) < 1e-9
+    view.close()
 
 
 def test_change_points_stay_while_nothing_changes_that_they_hang_on(browser: Any) -> None:

@@ -19,7 +19,7 @@ PLAYER_SCRIPTS = (
 )
 PLAYER_STYLE = "player.css"
 # Before the player, which takes from the path what a live page does not hold.
-PATH_SCRIPTS = ("live/machine.js", "live/states.js", "live/path.js")
+PATH_SCRIPTS = ("live/machine.js", "live/follower.js", "live/states.js", "live/path.js")
 # In this order: each uses those before it.
 SCRIPTS = (
     "live/design.js",

@@ -32,9 +32,10 @@ from compoundkin.model.attributes import (
     motion_figure,
     unit_of,
 )
+from compoundkin.model.pairs.profile_contact import THINNED
 from compoundkin.programs.dimensions import FreeDimension
-from compoundkin.programs.graph.operation_graph import PARAMETER, SEED, InputNumber
-from compoundkin.programs.page_program import PageProgram, RecordedReason
+from compoundkin.programs.graph.operation_graph import PARAMETER, SEED, InputNumber, group_seed
+from compoundkin.programs.page_program import PageProgram, RecordedReason, SearchedContact
 from compoundkin.programs.recording.recorded_motion import ProgramOutput, output_of
 from compoundkin.programs.recording.seeded_order import whole_curve
 from compoundkin.programs.solved_designs import seed_values
@@ -122,7 +123,7 @@ class LiveData:
             "states": list(self._states()),
             "contacts": list(self._contacts()),
             "seeds": len(program.seeds),
-            "sides": [self.places[one.now.x] for one in program.carried[1]],
+            "sides": [self.places[one.now.x] for one in program.carried[1] if one.given.name not in self._searched],
             "groups": list(self._groups()),
             "panel": panel_data(program.stated, names),
             "toml": template_data(program.stated, names, self.motion),
@@ -168,7 +169,14 @@ class LiveData:
             kinds: dict[str, Any] = {"angle": state.is_angle, "corrected": state.is_corrected}
             if given in program.signs:
                 kinds["sign"] = program.signs[given]
+            if given.name in self._searched:
+                kinds |= {"corrected": False, "searched": True}
             yield {"row": row, "now": self.places[state.now.x], "own": values, **kinds}
+
+    @cached_property
+    def _searched(self) -> frozenset[str]:
+        """The groups whose states are found anew at each pose."""
+        return frozenset(group_seed(one.index) for one in self.program.followers)
 
     @cached_property
     def _rows(self) -> Mapping[InputNumber, int]:
@@ -190,7 +198,27 @@ class LiveData:
                 "row": rows[mine[PARAMETER]] if PARAMETER in mine else -1,
                 "rows": [[rows[given], part[0], int(part[1:])] for part, given in mine.items() if part != PARAMETER],
                 "profile": profile_data(whole_curve(one.pair)),
+                **self._follower(one),
             }
+
+    def _follower(self, contact: SearchedContact) -> dict[str, Any]:
+        """Return how the contact of a follower is searched anew, and which state its coordinate is."""
+        states = [state.given.name for state in self.program.carried[0]]
+        for one in self.program.followers:
+            if one.contact is contact:
+                curve = whole_curve(contact.pair)
+                found = {
+                    "state": states.index(group_seed(one.index)),
+                    "path": [self.places[node] for node in one.nodes],
+                    "straight": one.straight,
+                    "sense": one.sense,
+                    "greatest": one.is_greatest,
+                    "turns": contact.pair.turns,
+                    "outward": contact.pair.outward,
+                    "samples": len(curve.samples.s[::THINNED]) - (0 if curve.closed else 1),
+                }
+                return {"follower": found}
+        return {}
 
     def _dimension(self, one: FreeDimension) -> dict[str, Any]:
         unit = self.program.stated.unit(one)

@@ -18,12 +18,20 @@
   const wrapped = (angle) => angle - TURN * Math.round(angle / TURN);
   const between = (here, there, part) => (part === 1 ? there : here.map((value, k) => value + part * (there[k] - value)));
 
+  // n over k, for all n up to a degree
+  const over = (degree, k) => {
+    const found = new Float64Array(degree + 1);
+    for (let n = k, ways = 1; n <= degree; ways = (ways * ++n) / (n - k)) found[n] = ways;
+    return found;
+  };
+
   // A profile in polynomials, each about the middle of its stretch (live_data.py), and the search for where it is touched.
   class Profile {
     constructor({ low, high, closed, degree, edges, x, y }) {
       const ends = page.unpacked(edges, 0), open = (text) => page.unpacked(text, (ends.length - 1) * (degree + 1));
       Object.assign(this, { low, high, closed, degree, span: high - low, edges: ends, x: open(x), y: open(y) });
       this.unit = this.span / TURN;
+      this.ways = Array.from({ length: degree + 1 }, (_, k) => over(degree, k)); // n over k
       this.found = new Float64Array(2 * (degree + 1));
       this.samples = Array.from({ length: closed ? SAMPLES : SAMPLES + 1 }, (_, k) => low + (k * this.span) / SAMPLES);
       [this.sx, this.sy] = [0, 1].map((part) => Float64Array.from(this.samples, (s) => this.at(s, 0)[part]));
@@ -38,12 +46,11 @@
       while (high - low > 1) { const middle = (low + high) >> 1; if (edges[middle] <= s) low = middle; else high = middle; }
       const away = s - (edges[low] + edges[low + 1]) / 2, base = low * (degree + 1);
       for (let k = 0; k <= order; k++) {
-        let [x, y, ways] = [0, 0, 1]; // degree over k, then n over k
-        for (let j = 1; j <= k; j++) ways = (ways * (degree - k + j)) / j;
+        const ways = this.ways[k];
+        let x = 0, y = 0;
         for (let n = degree; n >= k; n--) {
-          x = x * away + ways * this.x[base + n];
-          y = y * away + ways * this.y[base + n];
-          ways = (ways * (n - k)) / n;
+          x = x * away + ways[n] * this.x[base + n];
+          y = y * away + ways[n] * this.y[base + n];
         }
         found[2 * k] = x;
         found[2 * k + 1] = y;
@@ -86,6 +93,7 @@
     // `values` are those of the drivers at all poses, `single` a machine of one pose, `start` where everything starts
     constructor({ size, states, contacts, sides, dimensions }, program, { start, values, single }) {
       const searched = contacts.map((one) => ({ ...one, profile: new Profile(one.profile), order: Math.max(0, ...one.rows.map(([, , k]) => k)) }));
+      for (const one of searched) one.meets = one.follower && new page.Follower(one.profile, one.follower, one.flat);
       Object.assign(this, { program, size, all: [...states, ...searched], sides, start, single });
       this.signs = states.flatMap(({ sign, own }, index) => (sign === undefined ? [] : [{ index, sign, own: page.unpacked(own, values[0].length) }]));
       this.special = dimensions.flatMap(({ keeps, value }, index) => (keeps === false ? [[index, value]] : []));
@@ -146,13 +154,25 @@
       });
     }
     // searches a contact at all poses of a machine; tells of each by how much it has moved
-    search(machine, { aim: [x, y], profile, flat }, own, moved) {
+    search(machine, contact, values, index, moved) {
+      const { aim: [x, y], profile, flat, meets } = contact, own = values[index];
+      if (meets) return this.meet(machine, contact, values, index, moved);
       const [ax, ay] = [machine.row(x, 0), machine.row(y, 1)];
       for (let k = 0; k < own.length; k++) {
         const found = profile.touched(ax[k], ay[k], flat);
         if (found !== found) continue;
         moved(k, Math.abs(this.away({ profile }, found, own[k])));
         own[k] = found;
+      }
+    }
+    // the same where a follower comes to its profile, with its coordinate
+    meet(machine, contact, values, index, moved) {
+      const { follower: { state, path }, meets } = contact, each = this.all[state];
+      for (let k = 0; k < values[index].length; k++) {
+        const [q, s] = meets.met(path.map((place) => (place >= 0 ? machine.rows[place][k] : machine.numbers[-1 - place])), machine, k);
+        if (q === q) moved(k, Math.max(Math.abs(this.away(each, q, values[state][k])), Math.abs(this.away(contact, s, values[index][k]))));
+        values[state][k] = q;
+        values[index][k] = s;
       }
     }
 
@@ -167,7 +187,8 @@
         this.open = new Uint8Array(machine.length);
         this.all.forEach((state, index) => {
           const own = values[index];
-          if (state.profile) return this.search(machine, state, own, (k, far) => { if (!(far <= FOUND)) this.open[k] = 1; });
+          if (state.searched) return; // with its contact
+          if (state.profile) return this.search(machine, state, values, index, (k, far) => { if (!(far <= FOUND)) this.open[k] = 1; });
           const now = machine.row(state.now, 0);
           if (!state.corrected) open = this.counted(now, own, near.values[index]) || open;
           else {
@@ -187,7 +208,7 @@
         const passes = near.sides && sides.some((side, index) => side[k] * near.sides[index][k] < 0);
         if (!this.open[k] && !leaps && !passes) continue;
         this.lost[k] = this.corrected ? 1 : 0;
-        this.all.forEach((state, index) => { if (state.corrected || state.profile) values[index][k] = before[index][k]; });
+        this.all.forEach((state, index) => { if (state.corrected || (state.profile && !state.meets)) values[index][k] = before[index][k]; });
       }
     }
     // whether what is still open is no number any more
@@ -232,7 +253,7 @@
     }
     // the state of the start as dimensions go from those of a design to others, in steps as long as it stays near
     led(state, design, numbers) {
-      if (state.some((value) => value !== value)) return null;
+      if (state.some((value, k) => value !== value && this.all[k].corrected)) return null;
       return this.follow(state, null, (part) => this.single.take(between(design.numbers, numbers, part)))?.state;
     }
     // from pose to pose, through those `only` that are lost; tells where it ended
@@ -289,10 +310,11 @@
         one.run(0, this.program.ends[0]);
         let far = 0;
         this.all.forEach((state, index) => {
+          if (state.searched) return;
           if (state.profile) {
-            const own = [guess[index]];
-            this.search(one, state, own, (_, off) => { if (!(off <= FOUND)) far = Math.max(far, CLOSED * 2); });
-            guess[index] = own[0];
+            const own = guess.map((value) => [value]);
+            this.search(one, state, own, index, (_, off) => { if (!(off <= FOUND)) far = Math.max(far, CLOSED * 2); });
+            own.forEach(([value], n) => { guess[n] = value; });
             return;
           }
           const now = one.row(state.now, 0)[0];
