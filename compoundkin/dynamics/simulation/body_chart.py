@@ -18,7 +18,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from compoundkin.base.arrays import Number, cross, dot, first_entry, whole_turns
+from compoundkin.base.arrays import Number, first_entry, whole_turns
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import Series
 from compoundkin.dynamics.mass_motion import InertiaTerms, MovingMass, moving_masses
@@ -33,17 +33,23 @@ from compoundkin.dynamics.simulation.driver_state import (
     rotor_forces,
     rotors_that_lose,
 )
+from compoundkin.dynamics.simulation.pair_equations import (
+    Equations,
+    PairEquations,
+    coefficient,
+    link_poses,
+    plain_number,
+)
 from compoundkin.dynamics.simulation.simulated_energy import sorted_loads
 from compoundkin.dynamics.simulation.stop_contacts import StopContact, holding, is_no_contact, pressed, sprung
 from compoundkin.kinematics.block import Block
-from compoundkin.kinematics.driver_values import mapped
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.laws import Law
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.contract import Ends, Poses, as_transmitting_pair, constraint_scales
+from compoundkin.model.pairs.contract import as_transmitting_pair
 from compoundkin.model.pairs.profile_contact import as_profile_contact
 
 # Equations that move a link by less than this part of what others do say nothing new: what drifts off redundant pairs
@@ -58,26 +64,6 @@ PROJECTED, PROJECTIONS, CHORD = 1e-14, 8, 1e-6
 NO_MASS = 1e-20
 
 
-class _Pins(NamedTuple):
-    """All pins at once: the indices of their links, and their places there."""
-
-    first: Number
-    second: Number
-    own: Number
-    other: Number
-
-
-class _Slides(NamedTuple):
-    """All slides at once: the indices of their links, and their points and directions there."""
-
-    first: Number
-    second: Number
-    own: Number
-    other: Number
-    guide: Number
-    block: Number
-
-
 class _Bodies(NamedTuple):
     """All masses at once: where their links' coordinates begin, and the mass matrix but for its eccentric terms."""
 
@@ -85,46 +71,6 @@ class _Bodies(NamedTuple):
     mass: Number
     centre: Number
     matrix: Number
-
-
-class _HeldPair(NamedTuple):
-    """A pair that is no pin: the places of its members' columns, and the scales of its equations."""
-
-    pair: Pair
-    ends: Ends
-    columns: Number
-    scales: Number
-
-
-class _HeldCoordinate(NamedTuple):
-    """A coordinate that is prescribed: by the law of a driver, or at its first value."""
-
-    pair: Pair
-    ends: Ends
-    columns: Number
-    sense: float
-    scale: float
-    law: str | None
-    first: float
-
-
-class _SlideRows(NamedTuple):
-    """What is open of slides, what it would be accelerated by, and its derivatives."""
-
-    open: tuple[Number, Number]
-    second: tuple[Number, Number]
-    direction: Number
-    turning: tuple[Number, Number]
-    aligned: Number
-
-
-class Equations(NamedTuple):
-    """The pairs' equations at a state, in parts of the size and radians: what is open, J, b and c."""
-
-    open: Number
-    jacobian: Number
-    rates: Number
-    second: Number
 
 
 @dataclass(eq=False)
@@ -153,17 +99,15 @@ class BodyChart:
         self.names = (*self.drivers, *self.laws)
         self.links = tuple(link for link in self.world if link != FRAME)
         self.free = tuple(f"{link}.{part}" for link in self.links for part in ("x", "y", "angle"))
-        self.index = {link: k for k, link in enumerate(self.links)} | {FRAME: len(self.links)}
-        self.scales = np.tile([self.size, self.size, 1.0], len(self.links))
         self.gravity = complex(first_entry(self.mechanism.free_fall))
         stored, others = (tuple(filter(is_no_contact, loads)) for loads in sorted_loads(self.start))
         self.loads = stored, others
-        known = self.start.inputs.cut(ONLY, ONLY).ends
-        self.ends = {name: tuple(mapped(end, _number) for end in ends) for name, ends in known.items()}
         self.first = np.array([part for link in self.links for part in _coordinates(self.world[link])])
+        self.pair_equations = PairEquations(self.start, self.links, self.laws, self.first)
+        self.index, self.ends = self.pair_equations.index, self.pair_equations.ends
+        self.scales = self.pair_equations.lengths[:-3]
         self.bodies = self._bodies(moving_masses(self.start.structure))
         self.turned = {name: float(np.ravel(one.value)[0]) for name, one in self._angles()}
-        self._gather()
         self.farthest = self.state(0.0, self.first, np.zeros_like(self.first)).least
 
     @property
@@ -182,52 +126,6 @@ class BodyChart:
     def _angles(self) -> Iterable[tuple[str, Any]]:
         return ((pair.name, self.start.pairs[pair.name]) for pair in self.start.structure.pairs
                 if pair.free_is_angle and pair.name in self.order.pairs)  # fmt: skip
-
-    def _gather(self) -> None:
-        """Sort the pairs into pins, others, and those whose coordinate is prescribed."""
-        structure = self.start.structure
-        pins = [pair for pair in structure.pairs if pair.is_simple and pair.free_is_angle]
-        members = np.array([[self.index[link] for link in pair.members] for pair in pins], dtype=int).reshape(-1, 2)
-        points = np.array([[end.point for end in self.ends_of(pair)] for pair in pins], dtype=complex).reshape(-1, 2)
-        self.pins = _Pins(members[:, 0], members[:, 1], points[:, 0], points[:, 1])
-        slides = [pair for pair in structure.pairs if pair.is_simple and not pair.free_is_angle]
-        members = np.array([[self.index[link] for link in pair.members] for pair in slides], dtype=int).reshape(-1, 2)
-        sides = np.array(
-            [[(end.point, end.along.c[0]) for end in self.ends_of(pair)] for pair in slides], dtype=complex
-        )
-        sides = sides.reshape(-1, 2, 2)
-        self.slides = _Slides(members[:, 0], members[:, 1], *sides[..., 0].T, *sides[..., 1].T)
-        self.pairs = tuple(
-            _HeldPair(pair, self.ends_of(pair), self._columns(pair), np.array(constraint_scales(pair, self.size)))
-            for pair in structure.pairs
-            if pair not in pins and pair not in slides
-        )
-        steps = [step for body in structure.bodies for step in body.driven if step.is_passive]
-        passive = [(step.pair, 1.0, None) for step in steps]
-        driven = [(own.pair, float(own.pair.driven_by(own.drive.link)), name)
-                  for name, own in structure.driven.items() if name in self.laws]  # fmt: skip
-        self.held_coordinates = tuple(self._held(*one) for one in (*passive, *driven))
-
-    def _held(self, pair: Any, sense: float, law: str | None) -> _HeldCoordinate:
-        ends = self.ends_of(pair)
-        scale = 1.0 if pair.free_is_angle else self.size
-        # angles of links may be written with other turns than the driver's
-        first = sense * _value(pair.coordinate(ends, self._still(pair)), 0)
-        return _HeldCoordinate(pair, ends, self._columns(pair), sense, scale, law, first)
-
-    def _still(self, pair: Pair) -> Poses:
-        """Return the first poses of a pair's members, with counted angles."""
-        world = self._world(self.first, np.zeros_like(self.first))
-        return tuple(world[link] for link in pair.members)
-
-    def ends_of(self, pair: Pair) -> Ends:
-        """Return the ends of a pair as plain numbers."""
-        known = self.ends.get(pair.name)
-        return known or tuple(mapped(end, _number) for end in pair.ends(self.mechanism.geometry))
-
-    def _columns(self, pair: Pair) -> Number:
-        """Return the places of the coordinates of a pair's members; the frame's are the last."""
-        return np.concatenate([3 * self.index[link] + np.arange(3) for link in pair.members])
 
     def state(self, time: float, values: Number, speeds: Number) -> BodyState:
         """Return the state at the coordinates of all links and their rates."""
@@ -269,24 +167,18 @@ class BodyChart:
 
         None with gears and belts, whose equations do not tell where teeth and strands are.
         """
-        held, first = list[tuple[str, int, float]](), self._first_row
-        for one in self.pairs:
+        held = list[tuple[str, int, float]]()
+        for one in self.pair_equations.others:
             contact = as_profile_contact(one.pair)
             if as_transmitting_pair(one.pair) is not None:
                 return None
             if contact is not None and not contact.has_ends:
-                held.append((one.pair.name, first, float(one.scales[0])))
-            first += len(one.scales)
+                held.append((one.pair.name, self.pair_equations.rows[one.pair.name].start, float(one.scales[0])))
         names, rows, scales = zip(*held, strict=True)
         here = self._projected(time, values, speeds)
         forces, states = here.pair_forces(), here.self_stress
         at, sizes = list(rows), np.array(scales)
         return spare_force(names.index(name), forces[at] / sizes, states[at].T / sizes)
-
-    @property
-    def _first_row(self) -> int:
-        """The first of the equations of pairs that are neither pins nor slides."""
-        return 2 * (len(self.pins.own) + len(self.slides.own))
 
     @property
     def rigid(self) -> tuple[StopContact, ...]:
@@ -353,7 +245,8 @@ class BodyChart:
         for name in self.drivers:
             own = self.start.structure.driven[name]
             sense = float(own.pair.driven_by(own.drive.link))
-            series = own.pair.coordinate(self.ends_of(own.pair), tuple(poses[link] for link in own.pair.members))
+            ends = self.pair_equations.ends_of(own.pair)
+            series = own.pair.coordinate(ends, tuple(poses[link] for link in own.pair.members))
             rows = [np.broadcast_to(_row(series.derivative(k)), times.shape) * sense for k in range(3)]
             if own.pair.free_is_angle:
                 begun = float(np.ravel(self.start.drives[name].value)[0])
@@ -392,117 +285,6 @@ class BodyChart:
         meant = pair_named(self.start, pair) if own is None else own.pair
         return angle + float(whole_turns(begun + self._turning(meant, values) - angle))
 
-    def _world(self, values: Number, speeds: Number) -> dict[str, Pose]:
-        """Return the poses of all links at a state, with their rates and without accelerations."""
-        z, w = values[0::3] + 1j * values[1::3], speeds[2::3]
-        dz, u = speeds[0::3] + 1j * speeds[1::3], np.exp(1j * values[2::3])
-        rows = zip(self.links, z.tolist(), dz.tolist(), u.tolist(), (1j * w * u).tolist(),
-                   (-0.5 * w * w * u).tolist(), values[2::3].tolist(), w.tolist(), strict=True)  # fmt: skip
-        found = {
-            link: Pose(Series((a, b, 0j)), Series((c, d, e)), Series((f, g, 0.0))) for link, a, b, c, d, e, f, g in rows
-        }
-        found[FRAME] = FIXED
-        return found
-
-    def _put_slides(self, at: int, found: _SlideRows, whole: Equations) -> int:
-        """Write the rows of all slides from a row on: distances, then angles; return the row behind them."""
-        slides, k, matrix = self.slides, len(self.slides.own), whole.jacobian
-        rows, angles = np.arange(at, at + k), np.arange(at + k, at + 2 * k)
-        whole.open[rows], whole.open[angles] = found.open
-        whole.second[rows], whole.second[angles] = found.second
-        e = found.direction
-        matrix[rows, 3 * slides.first], matrix[rows, 3 * slides.first + 1] = e.imag, -e.real
-        matrix[rows, 3 * slides.second], matrix[rows, 3 * slides.second + 1] = -e.imag, e.real
-        matrix[rows, 3 * slides.first + 2], matrix[rows, 3 * slides.second + 2] = found.turning
-        matrix[angles, 3 * slides.first + 2], matrix[angles, 3 * slides.second + 2] = -found.aligned, found.aligned
-        return at + 2 * k
-
-    def _slide_rows(self, z: Number, u: Number, v: Number, w: Number) -> _SlideRows:
-        """Return the rows of all slides: the distance of the block from the guide, the sine of their angle."""
-        slides = self.slides
-        w0, w1 = w[slides.first], w[slides.second]
-        e, f = u[slides.first] * slides.guide, u[slides.second] * slides.block
-        own, other = u[slides.first] * slides.own, u[slides.second] * slides.other
-        gap = z[slides.second] + other - z[slides.first] - own
-        rate = v[slides.second] + 1j * w1 * other - v[slides.first] - 1j * w0 * own
-        inward = w0 * w0 * own - w1 * w1 * other
-        sine, cosine = cross(e, f), dot(e, f)
-        moved = -w0 * w0 * cross(e, gap) + 2.0 * cross(1j * w0 * e, rate) + cross(e, inward)
-        turning = cross(1j * e, gap) - cross(e, 1j * own), cross(e, 1j * other)
-        return _SlideRows(
-            (cross(e, gap) / self.size, sine),
-            (-moved / self.size, np.square(w1 - w0) * sine),
-            e,
-            (turning[0] / self.size, turning[1] / self.size),
-            cosine,
-        )
-
-    def equations(self, state: BodyState) -> Equations:
-        """Return the equations of all pairs at a state."""
-        values, speeds = state.values, state.speeds
-        m = len(self.pins.own)
-        count = 2 * (m + len(self.slides.own)) + sum(len(one.scales) for one in self.pairs) + len(self.held_coordinates)
-        # the frame has columns, too, which are left out at last
-        whole = Equations(*(np.zeros(shape) for shape in (count, (count, len(values) + 3), count, count)))
-        z = np.append(values[0::3] + 1j * values[1::3], 0j)
-        u, w = np.append(np.exp(1j * values[2::3]), 1.0), np.append(speeds[2::3], 0.0)
-        at = self._put_pins(z, u, w, whole)
-        if len(self.slides.own):
-            guided = self._slide_rows(z, u, np.append(speeds[0::3] + 1j * speeds[1::3], 0j), w)
-            at = self._put_slides(at, guided, whole)
-        at = self._put_pairs(at, state, whole)
-        self._put_held(at, state, whole)
-        return whole._replace(jacobian=whole.jacobian[:, :-3])
-
-    def _put_pins(self, z: Number, u: Number, w: Number, whole: Equations) -> int:
-        """Write the rows of all pins, x and y in turn, before all others; return the row behind them."""
-        pins, m, matrix = self.pins, len(self.pins.own), whole.jacobian
-        own, other = u[pins.first] * pins.own, u[pins.second] * pins.other
-        gap = (z[pins.second] + other - z[pins.first] - own) / self.size
-        turned = (np.square(w[pins.first]) * own - np.square(w[pins.second]) * other) / self.size
-        even, odd = np.arange(0, 2 * m, 2), np.arange(1, 2 * m, 2)
-        whole.open[even], whole.open[odd] = gap.real, gap.imag
-        whole.second[even], whole.second[odd] = -turned.real, -turned.imag
-        matrix[even, 3 * pins.first] = matrix[odd, 3 * pins.first + 1] = -1.0
-        matrix[even, 3 * pins.second] = matrix[odd, 3 * pins.second + 1] = 1.0
-        matrix[even, 3 * pins.first + 2], matrix[odd, 3 * pins.first + 2] = own.imag / self.size, -own.real / self.size
-        matrix[even, 3 * pins.second + 2] = -other.imag / self.size
-        matrix[odd, 3 * pins.second + 2] = other.real / self.size
-        return 2 * m
-
-    @property
-    def _lengths(self) -> Number:
-        """The units of all columns, those of the frame too."""
-        return np.append(self.scales, self.scales[:3])
-
-    def _put_pairs(self, at: int, state: BodyState, whole: Equations) -> int:
-        """Write the rows of all other pairs from a row on; return the row behind them."""
-        lengths = self._lengths
-        for one in self.pairs:
-            poses, rows = tuple(state.world[link] for link in one.pair.members), slice(at, at + len(one.scales))
-            found = np.reshape(one.pair.jacobian(one.ends, poses), (-1, len(one.columns)))[: len(one.scales)]
-            whole.jacobian[rows, one.columns] = found * lengths[one.columns] / one.scales[:, None]
-            closure = one.pair.closure(one.ends, poses)
-            whole.open[rows] = [_value(series, 0) for series in closure] / one.scales
-            whole.second[rows] = [-2.0 * _value(series, 2) for series in closure] / one.scales
-            at += len(one.scales)
-        return at
-
-    def _put_held(self, at: int, state: BodyState, whole: Equations) -> None:
-        """Write the rows of what drivers prescribe from a row on."""
-        lengths = self._lengths
-        for row, held in enumerate(self.held_coordinates, start=at):
-            poses = tuple(state.world[link] for link in held.pair.members)
-            series = held.pair.coordinate(held.ends, poses)
-            value = held.sense * _value(series, 0)
-            wanted = (held.first, 0.0, 0.0) if held.law is None else prescribed_rates(self.laws[held.law], state.time)
-            apart = value - wanted[0]
-            slopes = np.reshape(held.pair.jacobian(held.ends, poses), (-1, len(held.columns)))[-1]
-            whole.jacobian[row, held.columns] = held.sense * slopes * lengths[held.columns] / held.scale
-            whole.open[row] = (apart - whole_turns(apart) if held.pair.free_is_angle else apart) / held.scale
-            whole.rates[row] = wanted[1] / held.scale
-            whole.second[row] = (wanted[2] - 2.0 * held.sense * _value(series, 2)) / held.scale
-
 
 @dataclass(frozen=True, eq=False)
 class _LoadedBodies(LoadedState):
@@ -516,7 +298,7 @@ class _LoadedBodies(LoadedState):
         assert self.slopes is not None
         pair, sign = self._meant(name)
         moved = pair.coordinate(self._ends(pair), tuple(self.columns[link] for link in pair.members))
-        return sign * self.slopes(pair), sign * 2.0 * _value(moved, 2)
+        return sign * self.slopes(pair), sign * 2.0 * coefficient(moved, 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -531,12 +313,12 @@ class BodyState:
     @cached_property
     def world(self) -> dict[str, Pose]:
         """The poses of all links, with their rates."""
-        return self.chart._world(self.values, self.speeds)
+        return link_poses(self.chart.links, self.values, self.speeds)
 
     @cached_property
     def equations(self) -> Equations:
         """The equations of all pairs."""
-        return self.chart.equations(self)
+        return self.chart.pair_equations.at(self.time, self.values, self.speeds, self.world)
 
     @cached_property
     def _parts(self) -> tuple[Number, Number, float, Number]:
@@ -639,8 +421,8 @@ class BodyState:
         for load in loads:
             for link, wrench in load.wrenches(self.loaded):
                 free, at = self.loaded.freed(link, wrench), 3 * self.chart.index[link]
-                force = complex(_number(free.force))
-                total[at : at + 3] += force.real, force.imag, float(_number(free.about(self.world[link].z.c[0])))
+                force = complex(plain_number(free.force))
+                total[at : at + 3] += force.real, force.imag, float(plain_number(free.about(self.world[link].z.c[0])))
         return total[:-3]
 
     def response(self, along: Number) -> Number:
@@ -680,9 +462,9 @@ class BodyState:
 
     def slopes(self, pair: Pair) -> Number:
         """Return the rates of a pair's coordinate by all coordinates."""
-        columns, poses = self.chart._columns(pair), tuple(self.world[link] for link in pair.members)
-        found = np.zeros(len(self.values) + 3)
-        found[columns] = np.reshape(pair.jacobian(self.chart.ends_of(pair), poses), (-1, len(columns)))[-1]
+        equations, poses = self.chart.pair_equations, tuple(self.world[link] for link in pair.members)
+        columns, found = equations.columns(pair), np.zeros(len(self.values) + 3)
+        found[columns] = np.reshape(pair.jacobian(equations.ends_of(pair), poses), (-1, len(columns)))[-1]
         return found[:-3]
 
     @cached_property
@@ -707,8 +489,8 @@ class BodyState:
 
 
 def _coordinates(pose: Pose) -> tuple[float, float, float]:
-    z = complex(_number(pose.z.c[0]))
-    return z.real, z.imag, float(_number(pose.angle.c[0]))
+    z = complex(plain_number(pose.z.c[0]))
+    return z.real, z.imag, float(plain_number(pose.angle.c[0]))
 
 
 def _pose(x: Number, v: Number, a: Number) -> Pose:
@@ -719,14 +501,5 @@ def _pose(x: Number, v: Number, a: Number) -> Pose:
     return Pose(z, Series((u, 1j * v[2] * u, second)), Series((x[2], v[2], a[2] / 2.0)))
 
 
-def _number(value: Any) -> Any:
-    """Return the last of a column, a number as it is."""
-    return np.ravel(value)[-1].item() if isinstance(value, np.ndarray) else value
-
-
 def _row(value: Any) -> Number:
     return np.ravel(value)
-
-
-def _value(series: Series, k: int) -> float:
-    return float(_number(series.c[k])) if len(series.c) > k else 0.0
