@@ -18,6 +18,7 @@ from compoundkin.kinematics.groups.group_equations import STRAY
 from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.backends import chosen_back_end
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, numbers_of_designs
+from compoundkin.programs.drawn_approach import DrawnApproach
 from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, HOLDS, STEP, InputNumber, start_of
 from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
@@ -34,11 +35,13 @@ STARTS_KEPT = 64
 class CallSeeds:
     """The seeds of a path's calls.
 
-    `by` solves designs; `own` are the inputs for the path's own dimensions, whose starts are remembered.
+    `by` solves designs; `own` are the inputs for the path's own dimensions, whose starts are remembered; `approach` is
+    that to its motions.
     """
 
     by: DesignSolver
     own: Mapping[InputNumber, Number]
+    approach: DrawnApproach
     backend: str | None
     _known_starts: dict[Any, MarchStart] = field(default_factory=dict)
     _continuations: dict[Any, DesignContinuation] = field(default_factory=dict)
@@ -49,10 +52,11 @@ class CallSeeds:
             return numbers
         designs, poses = numbers.extent
         is_quick = designs >= FEW_DESIGNS or chosen_back_end(self.backend) != "numpy"
-        if not (path.can_march and poses > 1 and is_quick):
-            sides = {side_of(solver): np.zeros((1, 1)) for solver in (path.march.solvers if path.march else ())}
+        if not (path.can_march and is_quick):
             seeds = _solved_seeds(path.seeds, numbers, self.by, path.mechanism.recording.signs)
-            return replace(numbers, given={**numbers.given, **seeds, **sides})
+            return _seeded(path, numbers, seeds)
+        if poses == 1:
+            return _seeded(path, numbers, self._at_pose(path, numbers))
         given = dict(numbers.given)
         for one, value in self._starts(path, numbers).items():
             given[start_of(one) if one != HOLDS else one] = value
@@ -60,23 +64,48 @@ class CallSeeds:
             given[InputNumber(DRIVE, name, STEP)] = np.diff(value, axis=1, append=value[:, -1:])
         return replace(numbers, given=given)
 
+    def _at_pose(self, path: RecordedPath, numbers: CallNumbers) -> dict[InputNumber, Number]:
+        """Return the seeds at one pose: continued from the drawing on the approach, or solved."""
+        drivers = numbers.driver_values
+        route = None if self._are_several(numbers) else self.approach.to_pose(drivers, FINER)
+        if route is None:
+            return _solved_seeds(path.seeds, numbers, self.by, path.mechanism.recording.signs)
+        home = {InputNumber(DRIVE, name, "0"): values[:, :1] for name, values in route.items()}
+        start = self._known_start(path, replace(numbers, given={**numbers.given, **home}))
+        return self._continued(path, numbers, start, route)
+
     def _starts(self, path: RecordedPath, numbers: CallNumbers) -> dict[InputNumber, Number]:
         """Return the seeds at first poses: continued from the path's own dimensions, or solved for designs too far."""
-        signs, designs = path.mechanism.recording.signs, numbers.extent[0]
+        designs = numbers.extent[0]
         first = replace(numbers, given={k: value[:, :1] for k, value in numbers.given.items()}, shape=(designs, 1))
-        drives = {one: value for one, value in numbers.given.items() if one.kind == DRIVE}
-        if any(value.shape[0] > 1 for value in drives.values()) or any(map(np.ndim, self.own.values())):
-            return _solved_seeds(path.seeds, first, self.by, signs)
+        if self._are_several(numbers):
+            return _solved_seeds(path.seeds, first, self.by, path.mechanism.recording.signs)
+        return self._continued(path, first, self._known_start(path, numbers), first.driver_values)
+
+    def _are_several(self, numbers: CallNumbers) -> bool:
+        """Tell whether designs have drivers' values of their own, or the path several designs."""
+        drives = (value for one, value in numbers.given.items() if one.kind == DRIVE)
+        return any(value.shape[0] > 1 for value in drives) or any(map(np.ndim, self.own.values()))
+
+    def _known_start(self, path: RecordedPath, numbers: CallNumbers) -> MarchStart:
+        """Return the start of the motion of the path's own dimensions."""
         key = path.seeds, *(value.tobytes() for value in numbers.driver_values.values())
         start = self._known_starts.get(key)
         if start is None:
             if len(self._known_starts) >= STARTS_KEPT:
                 self._known_starts.clear()
             start = self._known_starts[key] = self._own_start(path, numbers)
+        return start
+
+    def _continued(
+        self, path: RecordedPath, first: CallNumbers, start: MarchStart, route: Mapping[str, Number]
+    ) -> dict[InputNumber, Number]:
+        """Return the seeds at the only pose, which is the last of a route; the start is at its first."""
+        designs = first.extent[0]
         seeds = {one: np.full(first.extent, np.nan) for one in path.seeds} | {HOLDS: np.zeros((designs, 1))}
         far = np.ones(designs, dtype=bool)
         if start.holds:
-            steps = continuation_numbers(numbers, self.own, start.states)
+            steps = continuation_numbers(first, self.own, start.states, route)
             # the form tells for which zero rates the path is recorded
             if steps.form not in self._continuations:
                 self._continuations[steps.form] = DesignContinuation.of(path, steps, self.backend)
@@ -84,6 +113,7 @@ class CallSeeds:
             seeds |= {**{one: ends[one].copy() for one in path.seeds}, HOLDS: near[:, None].astype(float)}
             far = ~near
         if start.is_first and far.any():
+            signs = path.mechanism.recording.signs
             solved = _solved_seeds(path.seeds, numbers_of_designs(first, np.flatnonzero(far)), self.by, signs)
             for one, value in solved.items():
                 seeds[one][far] = value
@@ -115,6 +145,12 @@ class MarchStart(NamedTuple):
     is_first: bool
 
 
+def _seeded(path: RecordedPath, numbers: CallNumbers, seeds: Mapping[InputNumber, Number]) -> CallNumbers:
+    """Return numbers with the seeds at all poses, of which none tells the side of the next."""
+    sides = {side_of(solver): np.zeros((1, 1)) for solver in (path.march.solvers if path.march else ())}
+    return replace(numbers, given={**numbers.given, **seeds, **sides})
+
+
 def _solved_seeds(
     seeds: tuple[InputNumber, ...], numbers: CallNumbers, by: DesignSolver, signs: Mapping[int, int]
 ) -> dict[InputNumber, Number]:
@@ -138,8 +174,11 @@ def _in_configuration(motion: Motion, signs: Mapping[int, int], where: slice = s
     return good
 
 
-# So many steps lead from a path's own dimensions to a design's.
+# On the approach from the drawing states change so much less from pose to pose that they stay near what is predicted.
+FINER = 4
+# So many steps lead from a path's own dimensions to a design's, where the states are corrected once more.
 CONTINUATION_STEPS = 8
+CHANGING = CONTINUATION_STEPS + 2
 # Designs whose groups differ by more from the path's own (parts of the size, radians) are solved: of several
 # configurations they have the one nearest to the drawing, which may be another one there.
 FAR_STATE = 0.2
@@ -148,7 +187,7 @@ _MARGIN, _CERTAIN = InputNumber("least", "margin"), InputNumber("least", "certai
 
 @dataclass(frozen=True)
 class DesignContinuation(ShortRepr):
-    """A program that continues states of groups over changing dimensions, at one pose of the drivers."""
+    """A program that continues states of groups, over changing dimensions and then along a route of the drivers."""
 
     program: ReadyProgram[InputNumber]
     weights: Mapping[InputNumber, float]
@@ -177,21 +216,29 @@ class DesignContinuation(ShortRepr):
         for one, weight in self.weights.items():
             value = np.concatenate([numbers.given[start_of(one)], states[one]], axis=1) * weight
             near = near & (np.abs(np.diff(value, axis=1)).max(axis=1) <= STRAY)
-            near = near & (np.abs(value[:, -1] - value[:, 0]) <= FAR_STATE)
+            near = near & (np.abs(value[:, CHANGING] - value[:, 0]) <= FAR_STATE)
         for one, value in states.items():
             near = near & (one in self.weights or np.all(value * value[:, :1] > 0.0, axis=1))
         return {one: states[one][:, -1:] for one in self.weights}, near
 
 
 def continuation_numbers(
-    numbers: CallNumbers, own: Mapping[InputNumber, Number], states: Mapping[InputNumber, Number]
+    numbers: CallNumbers,
+    own: Mapping[InputNumber, Number],
+    states: Mapping[InputNumber, Number],
+    route: Mapping[str, Number],
 ) -> CallNumbers:
-    """Return the numbers of a continuation: one pose, with the path's own dimensions and states first."""
-    designs, part = numbers.extent[0], np.minimum(np.arange(CONTINUATION_STEPS + 2.0) / CONTINUATION_STEPS, 1.0)
+    """Return the numbers of a continuation from the path's own dimensions and states at the first pose of a route."""
+    designs, length = numbers.extent[0], max(values.shape[1] for values in route.values())
+    part = np.minimum(np.arange(CHANGING + length - 1.0) / CONTINUATION_STEPS, 1.0)
     given = {one: value[:, :1] for one, value in numbers.given.items()}
     for one, first in own.items():
         if one.kind == DIMENSION:
             given[one] = first + (given[one] - first) * part
-    rest = {InputNumber(DRIVE, one.name, STEP): np.zeros((1, 1)) for one in given if one.kind == DRIVE}
+    for name, values in route.items():
+        if length > 1:
+            values = np.concatenate([np.repeat(values[:, :1], CHANGING, axis=1), values[:, 1:]], axis=1)
+        given[InputNumber(DRIVE, name, "0")] = values
+        given[InputNumber(DRIVE, name, STEP)] = np.diff(values, axis=1, append=values[:, -1:])
     starts = {start_of(one): np.broadcast_to(value, (designs, 1)) for one, value in states.items()}
-    return replace(numbers, given={**given, **rest, **starts}, shape=(designs, len(part)))
+    return CallNumbers({**given, **starts}, (designs, len(part)), numbers.still)

@@ -23,6 +23,7 @@ from compoundkin.kinematics.driver_values import by_name
 from compoundkin.model.attributes import RATES
 from compoundkin.model.geometry import vector
 from compoundkin.programs.call_numbers import Call
+from compoundkin.programs.drawn_approach import spacings
 from compoundkin.programs.graph.operation_graph import (
     CONSTANT,
     DRIVE,
@@ -34,7 +35,7 @@ from compoundkin.programs.graph.operation_graph import (
     InputNumber,
     OperationGraph,
 )
-from compoundkin.programs.limit_screening import safe_margin, spacings
+from compoundkin.programs.limit_screening import safe_margin
 from compoundkin.programs.recorded_path import PathVariants, RecordedPath
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 

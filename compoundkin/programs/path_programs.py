@@ -32,8 +32,9 @@ from compoundkin.programs.dimensions import (
     dimension_values,
     mechanism_with,
 )
+from compoundkin.programs.drawn_approach import DrawnApproach
 from compoundkin.programs.graph.operation_graph import BEFORE, DRIVE, InputNumber
-from compoundkin.programs.limit_screening import DrawnApproach, LimitScreening, ScreenedDesigns, longest_step
+from compoundkin.programs.limit_screening import LimitScreening, ScreenedDesigns, longest_step
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.recorded_march import STEPS
@@ -104,7 +105,7 @@ class PathPrograms(ShortRepr):
     def seeds(self) -> CallSeeds:
         """The solver of the seeds of its calls."""
         own = {one: value for free in self.dimensions for one, value in free.parts_of(self.stated.own(free))}
-        return CallSeeds(partial(self.solve, order=0), own, self.chosen_backend)
+        return CallSeeds(partial(self.solve, order=0), own, self.approach, self.chosen_backend)
 
     @cached_property
     def approach(self) -> DrawnApproach:

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.programs import call_seeds
 from compoundkin.programs.backends import BACK_ENDS
+from compoundkin.programs.path_programs import PathPrograms
 
 NAMES = (
     "3-rrr",
@@ -79,3 +81,23 @@ def test_slopes_of_a_march_are_differences_of_solve():
         one, other = (getattr(motion.points["B3"], word) for motion in ends)
         slope = (one - other) / (2.0 * step)
         np.testing.assert_allclose(found[f"B3.{word}", f"{name}.y"], slope, rtol=0.0, atol=1e-7 * np.abs(slope).max())
+
+
+@pytest.mark.parametrize("name", ["3-rrr", "class-iii-six-bar", "stephenson-iii-floating-driver"])
+def test_one_pose_after_another_is_continued_from_the_drawing(name, monkeypatch):
+    pytest.importorskip("llvmlite")
+    mechanism = ck.load(name)
+    letters, dimensions = list(mechanism.carriers), designs_of(mechanism, 1, 0.003)
+    path = ck.compile(mechanism, [f"{a}.{word}" for a in letters for word in WORDS], free=[*dimensions])
+    values, rates = course_of(mechanism, 2)
+    own = {driver: float(np.ravel(value)[0]) for driver, value in values.items()}
+    path(own, **rates)
+    # nothing is solved any more
+    monkeypatch.setattr(call_seeds, "_solved_seeds", None)
+    monkeypatch.setattr(PathPrograms, "solve", None)
+    poses = [{driver: value + step for driver, value in own.items()} for step in (0.0, 0.04, -0.03)]
+    found = [[path(pose, given, **rates) for given in (None, dimensions)] for pose in poses]
+    monkeypatch.undo()
+    for pose, pair in zip(poses, found, strict=True):
+        for one, given in zip(pair, (None, dimensions), strict=True):
+            agree(one, ck.solve(path.mechanism(given), pose, **rates), letters, 1e-11)
