@@ -40,8 +40,6 @@ from compoundkin.studies.study_plan import (
 )
 from compoundkin.studies.study_program import StudyColumn, version_text, versions
 from compoundkin.studies.study_rows import (
-    MOST_BYTES,
-    MOST_ROWS,
     RunStore,
     StudyRows,
     cached_program,
@@ -50,6 +48,7 @@ from compoundkin.studies.study_rows import (
     piece_size,
     pieces_of,
     rows_of_bytes,
+    rows_together,
     whole_blocks,
 )
 
@@ -448,9 +447,9 @@ def part_columns(path: Path, columns: Sequence[StudyColumn]) -> dict[str, Number
 
 def part_pieces(path: Path, columns: Sequence[StudyColumn], start: int) -> Iterator[dict[str, Number]]:
     """Yield some columns of a part from a row on, piece by piece. Raises InvalidInput where it is damaged."""
-    names, most = [column.name for column in columns], max(1, min(MOST_ROWS, rows_of_bytes(columns, MOST_BYTES)))
+    names = [column.name for column in columns]
     with _opened(path) as file:
-        for batch in file.iter_batches(most, columns=names):
+        for batch in file.iter_batches(rows_together(columns), columns=names):
             if start < len(batch):
                 yield {column.name: _values(batch, column)[start:] for column in columns}
             start = max(start - len(batch), 0)

@@ -61,8 +61,9 @@ class RowsInMemory(StudyRows):
 
     def pieces(self, *names: str) -> Iterator[dict[str, Number]]:
         """Yield parts of the arrays."""
-        for start in range(0, self.count, MOST_ROWS):
-            yield {name: self.column(name)[start : start + MOST_ROWS] for name in names}
+        most = rows_together(one for one in self.columns if one.name in names)
+        for start in range(0, self.count, most):
+            yield {name: self.column(name)[start : start + most] for name in names}
 
     def picked(self, places: Number, *names: str) -> dict[str, Number]:
         """Return some columns, or all, of some rows."""
@@ -184,6 +185,11 @@ def piece_size(program: StudyProgram, workers: int = 1) -> int:
 def rows_of_bytes(columns: Iterable[StudyColumn], count: int) -> int:
     """Return how many rows of some columns take so many bytes."""
     return count // (_BYTES * sum(column.width or 1 for column in columns))
+
+
+def rows_together(columns: Iterable[StudyColumn]) -> int:
+    """Return how many rows of some columns are read at once."""
+    return max(1, min(MOST_ROWS, rows_of_bytes(columns, MOST_BYTES)))
 
 
 def whole_blocks(program: StudyProgram, rows: int) -> int:

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
+from compoundkin.base.arrays import Number
 from compoundkin.studies import study_folder, study_result, study_rows
 from compoundkin.studies.study_folder import is_reachable
 from tests.source import ROOT
@@ -73,8 +74,8 @@ def test_a_folder_has_the_rows_and_the_study(whole: ck.results.StudyResult, tmp_
 def test_a_part_is_computed_and_read_piece_by_piece(
     whole: ck.results.StudyResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(study_rows, "MOST_ROWS", 4096)
-    monkeypatch.setattr(study_folder, "MOST_ROWS", 3000)
+    # what is computed at once is rounded up to a block of 4096 rows
+    monkeypatch.setattr(study_rows, "MOST_ROWS", 3000)
     result = six_bar(COUNT).run(tmp_path / "one", chunk=COUNT)
     assert names(tmp_path / "one") == [f"rows-000000000-{COUNT:09d}.parquet", "study.json"]
     assert_same(result, whole)
@@ -247,3 +248,35 @@ def test_percentiles_of_very_many_values_are_those_of_sorted_ones(kind: str, mon
         parts, shares = np.array_split(values, 3), [0.0, 5.0, 25.0, 50.0, 95.0, 99.9, 100.0]
         found = study_result.percentiles_of(lambda parts=parts: parts, shares)  # type: ignore[misc]
         assert found == np.percentile(values, shares).tolist()
+
+
+def test_percentiles_of_courses_read_all_poses_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is far beyond the others, ties, least and greatest numbers; what is not finite counts for nothing."""
+    monkeypatch.setattr(study_result, "MOST_SORTED", 600)
+    monkeypatch.setattr(study_result, "MOST_LAID", 1000)
+    random, largest = np.random.default_rng(2), np.finfo(float).max
+    values = random.normal(size=(3000, 40))
+    values[:, 1] = np.where(values[:, 1] > 2.0, 1e300 * values[:, 1], values[:, 1])
+    values[:, 2] = np.round(values[:, 2], 1)
+    values[:, 3] *= 5e-324 / 0.1
+    values[:, 4] = np.where(values[:, 4] > 0.0, largest, -largest)
+    values[:, 5] = np.nan
+    values[:, 6] = np.where(random.random(3000) < 0.9, values[:, 6], random.choice([np.nan, np.inf, -np.inf], 3000))
+    reads, shares = [], [0.0, 5.0, 50.0, 99.9, 100.0]
+
+    def pieces() -> list[Number]:
+        reads.append(1)
+        return np.array_split(values, 5)
+
+    found = study_result.percentiles_by_column(pieces, 40, shares)
+    assert len(reads) <= 6
+    for column, own in zip(values.T, found.T, strict=True):
+        known = column[np.isfinite(column)]
+        if len(known):
+            # NumPy's own goes through infinity between the least and the greatest number
+            by_order = np.sort(known)[[0, -1]] if np.ptp(known / 2.0) > largest / 2.0 else None
+            expected = np.percentile(known, shares) if by_order is None else own
+            np.testing.assert_array_equal(own, expected)
+            assert by_order is None or own[[0, -1]].tolist() == by_order.tolist()
+        else:
+            assert np.isnan(own).all()

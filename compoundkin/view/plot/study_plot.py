@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import singledispatch
 from types import MappingProxyType
@@ -21,7 +21,7 @@ from compoundkin.kinematics.quantities import ASSEMBLED
 from compoundkin.model.attributes import typeset_unit
 from compoundkin.studies.optimisation.optimum import Optimum
 from compoundkin.studies.study_program import StudyColumn
-from compoundkin.studies.study_result import StudyResult, percentiles_of
+from compoundkin.studies.study_result import StudyResult, percentiles_by_column
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.plot import canvas, plot_style
@@ -172,45 +172,11 @@ def checked_percentiles(percentiles: Sequence[float]) -> list[float]:
     return result
 
 
-# Courses are read by so many poses at once that they take no more bytes than these.
-BYTES_AT_ONCE = 2**26
-
-
-def percentile_curves(
-    pieces: Callable[[], Iterable[Number]], count: int, poses: int, percentiles: Sequence[float]
-) -> Number:
-    """Return percentiles of courses at every pose, (percentiles, poses).
-
-    They are NaN where no design is known. The courses (designs, poses) come in pieces, each time they are asked for, of
-    which there are so many designs.
-
-    >>> values = np.array([[0.0, np.nan], [1.0, np.nan], [4.0, np.nan]])
-    >>> percentile_curves(lambda: [values[:1], values[1:]], 3, 2, [50.0]).tolist()
-    [[1.0, nan]]
-    """
-    result = np.full((len(percentiles), poses), np.nan)
-    many = BYTES_AT_ONCE // (8 * max(count, 1))
-    for first in range(0, poses, max(many, 1)):
-        some = slice(first, first + max(many, 1))
-        # what is too much for one pose alone is read again and again
-        kept = [np.array(piece[:, some]) for piece in pieces()] if many else None
-        for pose in range(*some.indices(poses)):
-
-            def known(pose: int = pose, first: int = first, kept: list[Number] | None = kept) -> Iterator[Number]:
-                own = pieces() if kept is None else kept
-                columns = (piece[:, pose if kept is None else pose - first] for piece in own)
-                return (column[np.isfinite(column)] for column in columns)
-
-            if found := percentiles_of(known, percentiles):
-                result[:, pose] = found
-    return result
-
-
 def _study_bands(among: StudyColumns, column: StudyColumn, percentiles: Sequence[float]) -> Bands:
     there, name = among.result.rows, column.name
-    courses = percentile_curves(
+    courses = percentiles_by_column(
         lambda: (piece[name][piece[ASSEMBLED]] for piece in there.pieces(name, ASSEMBLED)),
-        among.count, column.width or 0, percentiles,
+        column.width or 0, percentiles,
     )  # fmt: skip
     quantity = displayed_values(column.name, column.unit, courses)
     rows = dict(zip(percentiles, quantity.values, strict=True))

@@ -16,9 +16,8 @@ from tests import catalog
 
 pytest.importorskip("matplotlib")
 
-from compoundkin.studies import study_rows
+from compoundkin.studies import study_result, study_rows
 from compoundkin.studies.study_result import pareto_rows
-from compoundkin.view.plot import study_plot
 from compoundkin.view.plot.scatter_plots import rank_correlation
 from compoundkin.view.plot.study_columns import drawn_rows
 
@@ -173,11 +172,11 @@ def test_odd_studies_are_drawn_too() -> None:
     assert rank_correlation(np.ones(9), np.arange(9.0)) is None
 
 
-@pytest.mark.parametrize("most", [0, 8 * 128 * 5])
+@pytest.mark.parametrize("most", [40, 2**22])
 def test_what_is_read_piece_by_piece_is_drawn_as_the_whole(
     result: ck.results.StudyResult, monkeypatch: pytest.MonkeyPatch, most: int
 ) -> None:
-    """Pieces of 16 rows; courses by five poses at a time, or one pose that is too much for itself."""
+    """Pieces of 16 rows; courses whose values are sorted, or counted first."""
 
     def drawn() -> list[Any]:
         plots = (
@@ -194,7 +193,7 @@ def test_what_is_read_piece_by_piece_is_drawn_as_the_whole(
 
     whole = drawn()
     monkeypatch.setattr(study_rows, "MOST_ROWS", 16)
-    monkeypatch.setattr(study_plot, "BYTES_AT_ONCE", most)
+    monkeypatch.setattr(study_result, "MOST_SORTED", most)
     for one, other in zip(drawn(), whole, strict=True):
         np.testing.assert_array_equal(one, other)
 
