@@ -182,7 +182,12 @@ class LimitScreening(ShortRepr):
             return np.zeros_like(near), near | (approach is not None)
         if approach is None:
             return near, np.zeros_like(near)
-        return near, np.any(self._early(numbers, approach) < NEAR, axis=1)
+        early = np.array(np.broadcast_to(np.any(self._early(numbers, approach) < NEAR, axis=1), numbers.extent[:1]))
+        if early.any():
+            # the way is looked at as a motion is
+            screened = self.screen_all(_resting(numbers_of_designs(numbers, np.flatnonzero(early)), approach))
+            early[early] = screened.failed.any(axis=1) | np.isin(screened.designs, screened.to_solve)
+        return near, early
 
     def clear(self, numbers: CallNumbers, least: Number) -> Number:
         """Return which designs (designs,) need no screening, and are what the program computes."""

@@ -11,7 +11,9 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput, LikelySlip, UnknownName
+from compoundkin.kinematics.curve.change_points import NEAR
 from compoundkin.programs.limit_screening import LimitScreening
+from compoundkin.programs.path_programs import PathPrograms
 from tests.catalog import mechanism as loaded
 from tests.test_wrong_objects import WRONG
 
@@ -386,6 +388,24 @@ def test_one_motion_after_another_beside_the_drawing_is_known_to_be_clear(name, 
         np.testing.assert_allclose(found[letter], motion.points[letter].position, atol=1e-11 * motion.size)
     # the first is read in full, the second is looked at, and then how far the design is clear
     assert len(looks) <= 6
+
+
+@pytest.mark.parametrize("name", ["balanced-lamp", "klann-leg", "peaucellier", "windscreen-wiper"])
+def test_poses_near_a_limit_are_computed_where_no_change_point_is_passed_on_the_way(name, monkeypatch):
+    mechanism = loaded(name)
+    (drive,), letters = mechanism.drives, list(mechanism.carriers)
+    path = ck.compile(mechanism, letters)
+    own = float(np.ravel(path.programs.reference.inputs.drives[drive.name][0])[0])
+    poses = [own + step for step in (0.0, 1e-4, 0.01)]
+    monkeypatch.setattr(PathPrograms, "solve", lambda *_, **__: pytest.fail("a design is solved"))
+    found = [path(value) for value in poses]
+    monkeypatch.undo()
+    for value, one in zip(poses, found, strict=True):
+        way = path.programs.approach.values({drive.name: np.array([[value]])})
+        assert path.programs.limits._early(one.numbers, way).min() < NEAR
+        motion = ck.solve(mechanism, value)
+        for letter in letters:
+            np.testing.assert_allclose(one[letter], motion.points[letter].position, atol=1e-9 * motion.size)
 
 
 @pytest.mark.parametrize("name", ["five-bar", "five-bar-led", "excavator-arm", "pantograph"])

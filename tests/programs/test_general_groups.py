@@ -94,7 +94,7 @@ def test_one_pose_after_another_is_continued_from_the_drawing(name, monkeypatch)
     path(own, **rates)
     # nothing is solved any more
     monkeypatch.setattr(call_seeds, "_solved_seeds", None)
-    monkeypatch.setattr(PathPrograms, "solve", None)
+    monkeypatch.setattr(PathPrograms, "solve", lambda *_, **__: pytest.fail("a design is solved"))
     poses = [{driver: value + step for driver, value in own.items()} for step in (0.0, 0.04, -0.03)]
     found = [[path(pose, given, **rates) for given in (None, dimensions)] for pose in poses]
     monkeypatch.undo()
