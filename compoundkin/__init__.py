@@ -19,26 +19,7 @@ from compoundkin.base.moved_names import MOVED as _MOVED
 from compoundkin.base.version import VERSION
 from compoundkin.model.elements import drawn, drive, expect, link, mode
 from compoundkin.model.geometry import deg, polar
-from compoundkin.model.loads import (
-    damper,
-    effort,
-    force,
-    friction,
-    gravity,
-    latch,
-    mass,
-    motor,
-    pressure,
-    pretension,
-    release,
-    spring,
-    stop,
-    torque,
-)
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.outlines import outline
-from compoundkin.model.pairs import arc, belt, cam, face, gear, rack, roll, roll_around, slide, slot
-from compoundkin.model.pairs.cylinder import cylinder
 
 if TYPE_CHECKING:
     from compoundkin import chains as chains
@@ -67,10 +48,34 @@ if TYPE_CHECKING:
     from compoundkin.dimensional.synthesis import synthesise
     from compoundkin.dynamics.force_analysis import force_analysis
     from compoundkin.dynamics.simulation.forward_dynamics import simulate
-    from compoundkin.files import load, save
+    from compoundkin.files import load
+    from compoundkin.files.saved_files import save
     from compoundkin.kinematics import solve
     from compoundkin.kinematics.gaps import gaps
     from compoundkin.kinematics.quantities import quantity
+    from compoundkin.model.loads.attachments import effort
+    from compoundkin.model.loads.damper import damper
+    from compoundkin.model.loads.force import force, torque
+    from compoundkin.model.loads.friction import friction
+    from compoundkin.model.loads.gravity import gravity
+    from compoundkin.model.loads.latch import latch, release
+    from compoundkin.model.loads.mass import mass
+    from compoundkin.model.loads.motor import motor
+    from compoundkin.model.loads.pressure import pressure
+    from compoundkin.model.loads.pretension import pretension
+    from compoundkin.model.loads.spring import spring
+    from compoundkin.model.loads.stop import stop
+    from compoundkin.model.outlines import outline
+    from compoundkin.model.pairs.arc import arc
+    from compoundkin.model.pairs.belt import belt
+    from compoundkin.model.pairs.cam import cam
+    from compoundkin.model.pairs.cylinder import cylinder
+    from compoundkin.model.pairs.face import face
+    from compoundkin.model.pairs.gear import gear
+    from compoundkin.model.pairs.prismatic import slide
+    from compoundkin.model.pairs.rack import rack
+    from compoundkin.model.pairs.rolling import roll, roll_around
+    from compoundkin.model.pairs.slot import slot
     from compoundkin.programs.compiled_path import compile
     from compoundkin.programs.dimensions import with_dimensions
     from compoundkin.structure import decompose
@@ -172,42 +177,68 @@ for _room in ("configurations", "studio"):
     import_module(f"compoundkin.{_room}")
     globals().pop(_room, None)
 
-# What writes no mechanism is imported when it is first asked for: the module of each such word.
+# What not every mechanism is written with is imported when it is first asked for: the module of each such word.
 _LATE = {
     "alternatives": "synthesis.alternatives",
     "animate": "view.animation",
+    "arc": "model.pairs.arc",
     "around": "studies.samples.value_ranges",
+    "belt": "model.pairs.belt",
+    "cam": "model.pairs.cam",
     "characteristics": "analysis.characteristics.characteristics",
     "circuits": "configurations.circuit_search",
     "cognates": "dimensional.cognates",
     "compile": "programs.compiled_path",
     "configurations": "configurations.enumeration",
     "coupler_atlas": "dimensional.coupler_atlas",
+    "cylinder": "model.pairs.cylinder",
+    "damper": "model.loads.damper",
     "decompose": "structure",
     "draw": "view.sketch",
     "dyads": "dimensional.dyads",
+    "effort": "model.loads.attachments",
     "exercise": "view.report.exercises",
+    "face": "model.pairs.face",
+    "force": "model.loads.force",
     "force_analysis": "dynamics.force_analysis",
+    "friction": "model.loads.friction",
     "gaps": "kinematics.gaps",
+    "gear": "model.pairs.gear",
+    "gravity": "model.loads.gravity",
     "instant_centres": "analysis.centres.instant_centres",
     "interference": "analysis.interference",
+    "latch": "model.loads.latch",
     "load": "files",
     "loop_equations": "analysis.equations.loop_equations",
+    "mass": "model.loads.mass",
     "mobility_analysis": "structure.redundancy.mobility_analysis",
+    "motor": "model.loads.motor",
     "optimise": "studies.optimisation.design_optimisation",
+    "outline": "model.outlines",
     "page": "view.report",
     "plot": "view.plot",
+    "pressure": "model.loads.pressure",
+    "pretension": "model.loads.pretension",
     "quantity": "kinematics.quantities",
+    "rack": "model.pairs.rack",
+    "release": "model.loads.latch",
     "report": "view.report",
-    "save": "files",
+    "roll": "model.pairs.rolling",
+    "roll_around": "model.pairs.rolling",
+    "save": "files.saved_files",
     "sheet": "view.report.forces_section",
     "simulate": "dynamics.simulation.forward_dynamics",
     "singularities": "analysis.singularities",
+    "slide": "model.pairs.prismatic",
+    "slot": "model.pairs.slot",
     "solve": "kinematics",
+    "spring": "model.loads.spring",
+    "stop": "model.loads.stop",
     "studio": "studio.notebook",
     "study": "studies.study",
     "synthesise": "dimensional.synthesis",
     "tolerance": "studies.tolerances.tolerance",
+    "torque": "model.loads.force",
     "verify": "analysis.checks",
     "with_dimensions": "programs.dimensions",
     "with_driver": "synthesis.inversion",

@@ -21,7 +21,7 @@ from compoundkin.model.laws import (
     time_table,
 )
 from compoundkin.model.laws.function_law import FunctionLaw
-from compoundkin.model.prescribed_motion import place_table
+from compoundkin.model.prescribed_paths import place_table
 from compoundkin.synthesis.inversion import driven_forward, found_law
 
 __all__ = [

@@ -15,11 +15,14 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import networkx as nx
+import pytest
 
 import compoundkin
 from compoundkin.base.suffixes import SUFFIXES
 from compoundkin.kinematics.groups import DYADS
 from compoundkin.model.attributes import ALIASES, CATALOGUE, DERIVED, MOTION_FIGURES
+from compoundkin.model.fields import Item
+from compoundkin.model.loads import WRITTEN as LOADS
 from compoundkin.model.pairs import KINDS
 from tests.source import (
     FILES,
@@ -59,10 +62,8 @@ ALLOWED_BETWEEN_SISTERS: set[tuple[str, str]] = {
 FACE = sorted(path for path in FILES if path.parent == PACKAGE)
 # Files that play the same part in sister folders.
 SAME_PART = {"__init__.py", "contract.py"}
-# Pins follow from shared letters, so revolute pairs are made of them; a prescribed motion is made of a cross slide or a
-# turntable; __init__ gives users the words.
+# Pins follow from shared letters, so revolute pairs are made of them; __init__ gives users the words.
 ALLOWED_KINDS = {("model/definition.py", "Revolute"), ("structure/__init__.py", "Revolute")}
-ALLOWED_KINDS |= {("model/prescribed_motion.py", kind) for kind in ("Prismatic", "Revolute", "Slot")}
 OF_KINDS = ("model/pairs/", "kinematics/groups/")
 # Words of attributes that are keys of files, words of drives, façades or single letters as well.
 COMMON = {"advantage", "angle", "displacement", "x", "y", "speed", "rate", "value", "second", "acceleration", "jerk"}
@@ -163,7 +164,7 @@ def test_public_names_are_few() -> None:
 
 
 def test_kinds_are_named_in_their_own_folders_only() -> None:
-    kinds = {kind.__name__ for kind in KINDS} | set(DYADS)
+    kinds = {kind.__name__ for kind in KINDS.values()} | set(DYADS)
     only_shrinks(
         f"{where(path)}: {kind}"
         for path in FILES
@@ -194,7 +195,8 @@ NAMED = (ast.Name, ast.Attribute)
 
 def test_pairs_are_told_apart_in_their_own_folder_only() -> None:
     """By their kind, by its base classes, and by the protocols of what only some kinds have."""
-    told = {base.__name__ for kind in KINDS for base in kind.__mro__ if base.__module__.startswith("compoundkin")}
+    bases = {base for kind in KINDS.values() for base in kind.__mro__ if base.__module__.startswith("compoundkin")}
+    told = {base.__name__ for base in bases - {Item}}  # whatever a mechanism is written with
     folder = [path for path in FILES if where(path).startswith("model/pairs/")]
     told |= {node.name for path in folder for node in classes(path) if is_protocol(node)}
     others = [path for path in FILES if path not in folder]
@@ -271,16 +273,35 @@ def test_no_private_member_of_another_modules_object() -> None:
 # --- what is imported when ----------------------------------------------------------------------------------
 
 
-def loaded_by(statement: str) -> set[str]:
-    code = f"import sys\n{statement}\nprint(*{{name.split('.')[0] for name in sys.modules}})"
+def modules_loaded_by(statement: str) -> set[str]:
+    code = f"import sys\n{statement}\nprint(*sys.modules)"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     return set(result.stdout.split())
+
+
+def loaded_by(statement: str) -> set[str]:
+    return {name.split(".")[0] for name in modules_loaded_by(statement)}
 
 
 def test_importing_the_package_loads_nothing_heavy_but_numpy() -> None:
     loaded = loaded_by("import compoundkin")
     assert "numpy" in loaded
     assert not loaded & {"scipy", "networkx", "rich", "click", "matplotlib", "pandas", "pyarrow", "tomli_w"}
+
+
+# What every mechanism is written with, and what is read of one from its file.
+BEGINNING = ("import compoundkin", "import compoundkin\ncompoundkin.load('four-bar-norton')")
+
+
+@pytest.mark.parametrize("statement", BEGINNING)
+def test_what_a_mechanism_has_not_is_not_loaded(statement: str) -> None:
+    """Kinds of pairs but pins and slides, loads, laws, profiles; whatever solves."""
+    loaded = modules_loaded_by(statement)
+    kinds = {kind.__module__ for kind in (*KINDS.values(), *LOADS.values())}
+    used = {f"compoundkin.model.{name}" for name in ("pairs.revolute", "pairs.prismatic", "loads.mass")}
+    assert loaded & kinds == used
+    rooms = ("model.laws", "model.profiles", "base.curves", "structure", "kinematics", "files.json_schema")
+    assert not [name for name in loaded if name.startswith(tuple(f"compoundkin.{room}" for room in rooms))]
 
 
 def test_solving_loads_nothing_heavy_either() -> None:

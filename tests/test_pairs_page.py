@@ -19,8 +19,8 @@ def test_the_examples_run() -> None:
 def test_the_table_is_that_of_the_registry() -> None:
     lines = (line for line in PAGE.splitlines() if re.match(r"\| [A-Z] \|", line))
     rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines]
-    assert sorted(row[0] for row in rows) == sorted(kind.code for kind in KINDS)
-    for kind in KINDS:
+    assert sorted(row[0] for row in rows) == sorted(kind.code for kind in KINDS.values())
+    for kind in KINDS.values():
         (row,) = (row for row in rows if row[0] == kind.code)
         assert row[3].strip("`") == kind.table
         assert int(row[4]) == kind.held

@@ -19,10 +19,12 @@ from compoundkin.base.series import constant
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.model.attributes import RATES
-from compoundkin.model.elements import Drive, Item, Link, drawn, drive
+from compoundkin.model.elements import Drive, Link, drawn, drive
+from compoundkin.model.fields import Item
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import Pair, slide
+from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Osculation, osculation
+from compoundkin.model.pairs.prismatic import slide
 
 # A centre of curvature farther away than this many times the mechanism's size belongs to a straight profile.
 STRAIGHT = 1e8

@@ -243,8 +243,7 @@ def put_report(report: Report, form: str | None, path: str | None) -> None:
 
 def put_table(table: Table, path: str | None) -> None:
     """Print a table as CSV, or write it to a file."""
-    from compoundkin.files import save
-    from compoundkin.files.saved_files import csv_text
+    from compoundkin.files.saved_files import csv_text, save
 
     if path is None:
         put(csv_text(table).encode("utf-8"))

@@ -277,7 +277,7 @@ def schema_command(kind: str) -> int:
     """Print the JSON Schema of mechanism or study files. Editors check and complete TOML and JSON with it."""
     import json
 
-    from compoundkin.files import schema
+    from compoundkin.files.json_schema import schema
     from compoundkin.studies.study_document import study_schema
 
     result = {"mechanism": schema, "study": study_schema}[kind]()

@@ -77,7 +77,7 @@ def command(file: str, form: str | None, path: str | None, **options: Any) -> in
         file_format("report", path)
     found = search(solvable_structure(file, form, None), options)
     if is_mechanism:
-        from compoundkin.files import save
+        from compoundkin.files.saved_files import save
 
         put_report(optimum_report(found, options["outputs"]), form, None)
         save(found.mechanism, str(path))

@@ -126,7 +126,7 @@ def _start(structure: Structure, given: Sequence[str]) -> dict[str, Any] | None:
 
 def write_simulation(found: Simulation, kind: Kind, path: str, outputs: Sequence[str]) -> None:
     """Write a simulation as a table, an animation or a page."""
-    from compoundkin.files import save
+    from compoundkin.files.saved_files import save
 
     if kind == "table":
         save(found.table(*outputs), path)

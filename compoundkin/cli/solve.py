@@ -56,7 +56,8 @@ def command(file: str, path: str | None, forward: tuple[str, ...], **options: An
 
 def _write_driven(motion: Motion, links: tuple[str, ...], path: str | None) -> int:
     """Write the mechanism driven at some links by laws taken from a motion, or print it as TOML."""
-    from compoundkin.files import dumps, save
+    from compoundkin.files import dumps
+    from compoundkin.files.saved_files import save
     from compoundkin.model.elements import Drive
     from compoundkin.model.geometry import FRAME
     from compoundkin.synthesis.inversion import driven_forward

@@ -134,8 +134,8 @@ def _put(answer: Answer, folder: str | None, picture: str | None, form: str | No
     """Write the report, the picture and the mechanisms of an answer; return the exit code."""
     from compoundkin.base.display import count_phrase
     from compoundkin.base.suffixes import suffix_for
-    from compoundkin.files import save
     from compoundkin.files.atomic import new_folder
+    from compoundkin.files.saved_files import save
     from compoundkin.view.report.synthesis_report import synthesis_report
 
     put_report(synthesis_report(answer), form, path)

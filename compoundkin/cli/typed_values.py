@@ -13,9 +13,12 @@ from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.files.read_values import MOST_VALUES, rate, spaced, warn_of_radians, worded_rate, written_end
 from compoundkin.kinematics.driver_values import FULL_TURN
-from compoundkin.model.elements import Drive, Item
+from compoundkin.model.elements import Drive
+from compoundkin.model.fields import Item
 from compoundkin.model.geometry import FRAME
-from compoundkin.model.loads import force, gravity, mass, torque
+from compoundkin.model.loads.force import force, torque
+from compoundkin.model.loads.gravity import gravity
+from compoundkin.model.loads.mass import mass
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.units import KNOWN, Units, as_units
 from compoundkin.structure import Structure

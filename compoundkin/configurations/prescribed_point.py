@@ -17,7 +17,8 @@ from compoundkin.kinematics.driver_values import Inputs, inputs
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.solution import solving_order_of
 from compoundkin.kinematics.solving_order import SolvingOrder
-from compoundkin.model.elements import Drive, Expectation, Item, Mode, drive
+from compoundkin.model.elements import Drive, Expectation, Mode, drive
+from compoundkin.model.fields import Item
 from compoundkin.model.laws import constant_speed
 from compoundkin.model.laws.path_coordinate import PARTS
 from compoundkin.model.loads import LoadElement

@@ -18,10 +18,11 @@ from compoundkin.base.display import ShortRepr
 from compoundkin.dimensional.dyads import PR, RP, RR, Dyad
 from compoundkin.dimensional.tasks import INPUT, OUTPUT
 from compoundkin.model.attributes import ANGLE, POSITION
-from compoundkin.model.elements import Item, Link, drawn, drive, link
+from compoundkin.model.elements import Link, drawn, drive, link
+from compoundkin.model.fields import Item
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import slide
+from compoundkin.model.pairs.prismatic import slide
 
 # The coupler's name where a task names no body, and its point.
 COUPLER, POINT = "coupler", "P"

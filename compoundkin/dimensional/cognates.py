@@ -29,10 +29,11 @@ from compoundkin.dimensional.dyads import PR, RR, Dyad
 from compoundkin.dimensional.tasks import INPUT, OUTPUT
 from compoundkin.kinematics import Motion, solve
 from compoundkin.model.attributes import POSITION
-from compoundkin.model.elements import Drive, Item, drawn, drive, link
+from compoundkin.model.elements import Drive, drawn, drive, link
+from compoundkin.model.fields import Item
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import belt
+from compoundkin.model.pairs.belt import belt
 
 # Pivots nearer to each other than this part of their distance are one.
 SAME = 1e-9

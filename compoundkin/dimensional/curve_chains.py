@@ -26,10 +26,13 @@ from compoundkin.base.display import ShortRepr
 from compoundkin.dimensional.candidates import COUPLER, POINT, Linkage
 from compoundkin.kinematics import solve
 from compoundkin.model.attributes import POSITION, component_names
-from compoundkin.model.elements import Item, Link, drive, link, mode
+from compoundkin.model.elements import Link, drive, link, mode
+from compoundkin.model.fields import Item
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import belt, gear, slide
+from compoundkin.model.pairs.belt import belt
+from compoundkin.model.pairs.gear import gear
+from compoundkin.model.pairs.prismatic import slide
 from compoundkin.programs.call_numbers import Call
 from compoundkin.programs.compiled_path import CompiledPath, compile
 

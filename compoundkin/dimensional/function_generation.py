@@ -39,7 +39,7 @@ from compoundkin.dimensional.tasks import (
 )
 from compoundkin.model.elements import link
 from compoundkin.model.geometry import FRAME
-from compoundkin.model.pairs import slide
+from compoundkin.model.pairs.prismatic import slide
 
 # Equations are singular below this part of their size.
 SINGULAR = 1e-10

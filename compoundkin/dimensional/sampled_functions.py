@@ -50,10 +50,11 @@ from compoundkin.dimensional.design_refinement import (
 )
 from compoundkin.dimensional.tasks import NEXT, FunctionTask
 from compoundkin.model.attributes import ANGLE, VALUE
-from compoundkin.model.elements import Item, drive, link, mode
+from compoundkin.model.elements import drive, link, mode
+from compoundkin.model.fields import Item
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import slide
+from compoundkin.model.pairs.prismatic import slide
 from compoundkin.programs.call_numbers import Call
 from compoundkin.programs.compiled_path import CompiledPath, compile
 from compoundkin.studies.samples.random_samples import SobolSample

@@ -26,7 +26,7 @@ from compoundkin.kinematics.jacobian import moved_alone
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.geometry import FRAME, real, vector
-from compoundkin.model.loads import mass as mass_of
+from compoundkin.model.loads.mass import mass as mass_of
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.units import customary_unit
 
@@ -113,7 +113,7 @@ def counterweights(
     Tepper and G. G. Lowen, J. Engineering for Industry 94, 1972, 789-796.
 
     >>> from compoundkin.model.elements import drive, link
-    >>> from compoundkin.model.loads import mass as of
+    >>> from compoundkin.model.loads.mass import mass as of
     >>> parts = link("frame", A=0), link("arm", A=0, B=2), drive("arm"), of("arm", 3.0, at="B")
     >>> arm = Mechanism("Arm", *parts, units={"length": "m", "mass": "kg", "force": "N"})
     >>> found = counterweights(arm, mass=6.0)

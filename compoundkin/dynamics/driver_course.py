@@ -25,10 +25,12 @@ from compoundkin.kinematics.extremes.motion_between import inputs_between
 from compoundkin.kinematics.extremes.stretches import stretches_of
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.attributes import EFFORT, POWER
-from compoundkin.model.elements import Expectation, Item
+from compoundkin.model.elements import Expectation
+from compoundkin.model.fields import Item
 from compoundkin.model.geometry import FRAME
-from compoundkin.model.loads import effort, force, torque
+from compoundkin.model.loads.attachments import effort
 from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.force import force, torque
 from compoundkin.model.loads.gravity import Gravity
 from compoundkin.model.loads.mass import Mass
 from compoundkin.model.loads.pretension import Pretension
@@ -261,7 +263,8 @@ def drive_figures(forces: Forces, driver: str | None = None) -> DriveFigures:
     >>> from compoundkin.dynamics.force_analysis import force_analysis
     >>> from compoundkin.kinematics import solve
     >>> from compoundkin.model.elements import drive, link
-    >>> from compoundkin.model.loads import gravity, mass
+    >>> from compoundkin.model.loads.gravity import gravity
+    >>> from compoundkin.model.loads.mass import mass
     >>> from compoundkin.model.mechanism import Mechanism
     >>> parts = link("frame", A=0), link("arm", A=0, B=1), drive("arm"), mass("arm", 2, at="B"), gravity(0, -10)
     >>> arm = Mechanism("Arm", *parts, units={"length": "m", "mass": "kg", "force": "N"})

@@ -117,7 +117,8 @@ def equilibria(mechanism: Mechanism, values: Any = None) -> EquilibriumPositions
     Mechanics, 4th ed., Dover 1986.
 
     >>> from compoundkin.model.elements import drive, link
-    >>> from compoundkin.model.loads import gravity, mass
+    >>> from compoundkin.model.loads.gravity import gravity
+    >>> from compoundkin.model.loads.mass import mass
     >>> parts = link("frame", A=0), link("arm", A=0, B=1), drive("arm"), mass("arm", 2, at="B"), gravity(0, -9.81)
     >>> arm = Mechanism("Pendulum", *parts, units={"length": "m", "mass": "kg", "force": "N"})
     >>> print(equilibria(arm).text())

@@ -122,7 +122,8 @@ class Forces(DisplaysHtml, DisplaysText, ForceResult):
         """Return all that acts on a link, its free body. Raises UnknownName for an unknown link.
 
         >>> from compoundkin.model.elements import drive, link
-        >>> from compoundkin.model.loads import gravity, mass
+        >>> from compoundkin.model.loads.gravity import gravity
+        >>> from compoundkin.model.loads.mass import mass
         >>> from compoundkin.model.mechanism import Mechanism
         >>> from compoundkin.dynamics.force_analysis import force_analysis
         >>> from compoundkin.kinematics import solve

@@ -30,7 +30,8 @@ from compoundkin.kinematics.gaps import gaps
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import Table, has_quantity, quantity, tables_in_a_row
 from compoundkin.model.attributes import OF_LINKS, OF_POINTS, RADIANS
-from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode
+from compoundkin.model.elements import Drawn, Drive, Expectation, Link, Mode
+from compoundkin.model.fields import Item
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.contract import as_drivable
 from compoundkin.model.pairs.slot import letter_in_slot, slot_elsewhere, slot_with_ends

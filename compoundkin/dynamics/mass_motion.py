@@ -166,7 +166,7 @@ def equivalent_inertia(motion: Motion) -> EquivalentInertia:
     Source: reduced mass and its derivative, e.g. F. Wittenbauer, Graphische Dynamik, Springer 1923.
 
     >>> from compoundkin.model.elements import drive, link
-    >>> from compoundkin.model.loads import mass
+    >>> from compoundkin.model.loads.mass import mass
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.kinematics import solve
     >>> bar, units = mass("crank", 3.0, at=(2, 0), inertia=1), {"length": "m", "mass": "kg", "force": "N"}

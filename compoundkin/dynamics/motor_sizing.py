@@ -266,7 +266,7 @@ def sizing(
     >>> from compoundkin.dynamics.force_analysis import force_analysis
     >>> from compoundkin.kinematics import solve
     >>> from compoundkin.model.elements import drive, link
-    >>> from compoundkin.model.loads import mass
+    >>> from compoundkin.model.loads.mass import mass
     >>> from compoundkin.model.mechanism import Mechanism
     >>> parts = link("frame", A=0), link("arm", A=0, B=1), drive("arm", law=lambda t: t * t)
     >>> heavy = mass("arm", 2, at="A", inertia=0.5)
@@ -361,7 +361,8 @@ def _given(forces: Forces, driver: str) -> tuple[Number, Number]:
                 link = next(iter(own))
                 alike = dot(own[link].force, other[link].force) + own[link].moment * other[link].moment
                 total[at.designs, at.poses] += np.sign(alike) * motor.effort(at)
-                felt[at.designs, at.poses] += at.fitted(motor.rotor()[1], motor.where)
+                if rotor := motor.rotor():
+                    felt[at.designs, at.poses] += at.fitted(rotor[1], motor.where)
     return total, felt
 
 

@@ -105,7 +105,7 @@ def noncircular_drive(forces: Forces, *, driver: str | None = None) -> Noncircul
 
     >>> from compoundkin.kinematics import Motion, solve
     >>> from compoundkin.model.elements import drive, link
-    >>> from compoundkin.model.loads import effort
+    >>> from compoundkin.model.loads.attachments import effort
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.dynamics.force_analysis import force_analysis
     >>> load = effort("arm", lambda q: -2 - np.cos(q))

@@ -23,7 +23,8 @@ from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
 from compoundkin.kinematics.extremes import between, extremes
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.elements import Expectation, Item
+from compoundkin.model.elements import Expectation
+from compoundkin.model.fields import Item
 from compoundkin.model.loads.contract import Load
 from compoundkin.model.loads.friction import Friction
 from compoundkin.model.loads.gravity import Gravity
@@ -97,7 +98,9 @@ def balancing_springs(
 
     >>> from compoundkin.kinematics import solve
     >>> from compoundkin.model.elements import drive, link
-    >>> from compoundkin.model.loads import gravity, mass, spring
+    >>> from compoundkin.model.loads.gravity import gravity
+    >>> from compoundkin.model.loads.mass import mass
+    >>> from compoundkin.model.loads.spring import spring
     >>> parts = link("frame", A=0, S=0.5j), link("arm", A=0, B=0.4), drive("arm"), mass("arm", 2, at=1, inertia=0)
     >>> loads = gravity(0, -10), spring("arm", "B", at="S", stiffness=1, name="balancer")
     >>> arm = Mechanism("Arm", *parts, *loads, units={"length": "m", "mass": "kg", "force": "N"})

@@ -400,7 +400,8 @@ def strength(
     >>> from compoundkin.dynamics.force_analysis import force_analysis
     >>> from compoundkin.kinematics import solve
     >>> from compoundkin.model.elements import drive, link
-    >>> from compoundkin.model.loads import gravity, mass
+    >>> from compoundkin.model.loads.gravity import gravity
+    >>> from compoundkin.model.loads.mass import mass
     >>> from compoundkin.model.mechanism import Mechanism
     >>> parts = link("frame", A=0), link("arm", A=0, B=2), drive("arm"), mass("arm", 3), gravity(0, -10)
     >>> arm = Mechanism("Arm", *parts, units={"length": "m", "mass": "kg", "force": "N"})

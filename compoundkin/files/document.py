@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 from compoundkin.model.attributes import IMBALANCE, TIME_RATIO, is_angle_word, motion_figure
 from compoundkin.model.definition import CYLINDERS, DRIVES
 from compoundkin.model.elements import Drive
-from compoundkin.model.fields import Key, Kind
-from compoundkin.model.laws.motion_programs import LIMITS, NAMES, ProgramSegment
+from compoundkin.model.fields import Key
 from compoundkin.model.loads import WRITTEN as LOADS
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.outlines import OUTLINES, LinkOutline
-from compoundkin.model.pairs import KINDS, WRITTEN
+from compoundkin.model.pairs import KINDS
+from compoundkin.model.pairs import WRITTEN as PAIRS
 from compoundkin.model.pairs.cylinder import Cylinder
 
 FORMATS = (1,)
@@ -69,27 +68,29 @@ EXPECTED = (
 )
 
 # In the order in which a file is written; the drawing comes after the drives.
-TABLES = (
-    TableForm("links", "named", LINK, "The links by name; the one called frame is fixed.", required=True),
-    *(TableForm(name, "array", kind.keys, f"Each is a {kind.title}.") for name, kind in WRITTEN.items()),
-    TableForm(CYLINDERS, "array", Cylinder.keys, "Each is a cylinder: a barrel and a rod between two pins."),
-    TableForm(DRIVES, "array", Drive.keys, "The drivers of pairs, and the prescribed motions of points and links."),
-    *(TableForm(name, "array", kinds[0].keys, f"Each is a {kinds[0].title}.") for name, kinds in LOADS.items()),
-    TableForm(OUTLINES, "array", LinkOutline.keys, "Each is an outline of a link, or a part of it."),
-    TableForm("modes", "array", MODE, "Assembly modes chosen by sign instead of by a drawing."),
-    TableForm("expected", "array", EXPECTED, "Published numbers to hold the solution against."),
-)
+TABLES = ("links", *PAIRS, CYLINDERS, DRIVES, *LOADS, OUTLINES, "modes", "expected")
+
+
+def table_forms() -> tuple[TableForm, ...]:
+    """Return the forms of all tables, in their order."""
+    return (
+        TableForm("links", "named", LINK, "The links by name; the one called frame is fixed.", required=True),
+        *(TableForm(name, "array", kind.keys, f"Each is a {kind.title}.") for name, kind in PAIRS.items()),
+        TableForm(CYLINDERS, "array", Cylinder.keys, "Each is a cylinder: a barrel and a rod between two pins."),
+        TableForm(DRIVES, "array", Drive.keys, "The drivers of pairs, and the prescribed motions of points and links."),
+        *(TableForm(name, "array", kind.keys, f"Each is a {kind.title}.") for name, kind in LOADS.items()),
+        TableForm(OUTLINES, "array", LinkOutline.keys, "Each is an outline of a link, or a part of it."),
+        TableForm("modes", "array", MODE, "Assembly modes chosen by sign instead of by a drawing."),
+        TableForm("expected", "array", EXPECTED, "Published numbers to hold the solution against."),
+    )
+
 
 # The pins are not written: they follow from shared letters.
-_PIN_IS_ANGLE = next(kind.free_is_angle for kind in KINDS if not kind.table)
+_PIN_IS_ANGLE = next(kind.free_is_angle for kind in KINDS.values() if not kind.table)
 
 KIND = "kind"
 # The law whose segments need not say how far they rise.
 DWELL = "dwell"
-RISING = tuple(name for name in NAMES if name != DWELL)
-# The spans of a cam's program are of its rotation, and limits are rates by that, in radians.
-_OF_CAMS: Mapping[str, Kind] = {"over": "turn", **dict.fromkeys(LIMITS, "number")}
-SEGMENT = tuple(replace(key, kind=_OF_CAMS.get(key.name, key.kind)) for key in ProgramSegment.keys)
 # It is told what repeats by the cam.
 PROGRAM = (
     Key("segments", "turned", "Its dwells, rises and falls over a full turn, one after another.", required=True),

@@ -10,16 +10,17 @@ from typing import Any
 from compoundkin.files import document as doc
 from compoundkin.files import exact_numbers
 from compoundkin.files.atomic import write_atomically
-from compoundkin.files.document import KIND, PROGRAM, SEGMENT
+from compoundkin.files.document import KIND, PROGRAM
+from compoundkin.files.law_tables import SEGMENT
 from compoundkin.model.definition import DRIVES
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.laws import WRITTEN as LAWS
 from compoundkin.model.laws.motion_programs import ProgramSegment
-from compoundkin.model.loads import WRITTEN as LOADS
+from compoundkin.model.loads import ALONG_PAIRS
 from compoundkin.model.loads.amounts import LoadTable
-from compoundkin.model.prescribed_motion import WRITTEN as PATHS
 from compoundkin.model.prescribed_motion import PrescribedMotion
+from compoundkin.model.prescribed_paths import WRITTEN as PATHS
 from compoundkin.model.profiles import WRITTEN as PROFILES
 from compoundkin.model.units import KNOWN as UNITS
 
@@ -40,7 +41,7 @@ def schema() -> dict[str, Any]:
         "properties": {
             "format": {"enum": list(doc.FORMATS), "description": doc.FORMAT_DOC},
             **{key.name: _key(key) for key in doc.HEAD},
-            **{table.name: _tables(table) for table in doc.TABLES},
+            **{table.name: _tables(table) for table in doc.table_forms()},
             doc.DRAWN.name: _key(doc.DRAWN),
             doc.GRAVITY.name: _key(doc.GRAVITY),
         },
@@ -67,8 +68,8 @@ def publish(path: str | os.PathLike[str]) -> None:
 
 def _tables(table: doc.TableForm) -> dict[str, Any]:
     one = closed_table(table.keys)
-    if len(kinds := LOADS.get(table.name, ())) > 1:
-        one = {"anyOf": [closed_table(kind.keys) for kind in kinds]}
+    if table.name in ALONG_PAIRS:
+        one = {"anyOf": [one, closed_table(ALONG_PAIRS[table.name].keys)]}
     if table.name == DRIVES:
         ways = [{"required": [key.name]} for key in PrescribedMotion.keys if key.kind in ("law", "path")]
         one = {"anyOf": [one, {**closed_table(PrescribedMotion.keys), "anyOf": ways}]}

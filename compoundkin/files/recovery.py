@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidMechanism, Problem, suggestion
@@ -39,7 +39,9 @@ from compoundkin.files.read_values import (
 from compoundkin.model.fields import Key, Kind
 from compoundkin.model.loads import WRITTEN as LOADS
 from compoundkin.model.outlines import OUTLINES
-from compoundkin.model.profiles import disc
+
+if TYPE_CHECKING:
+    from compoundkin.model.profiles import Profile
 
 # Begins every name that stands in for a broken one: the Unicode replacement character.
 STAND_IN = "\ufffd"
@@ -62,10 +64,6 @@ DRAWING = (r"links\..+\.points\.", r"drawn\.")
 
 
 ALL = (r".*",)
-
-
-# What takes the place of a broken profile: any roller fits into it.
-PROFILE = disc(1e9)
 
 
 # What reads a table with problems of its own: it reports them.
@@ -176,11 +174,18 @@ class Recovery:
         values: dict[Kind, Any] = {
             "name": name, "text": name, "names": (), "point": point, "points": {name: point}, "drawing": {},
             "sign": 1, "values": None, "rate": 1.0, "at": {}, "times": None, "law": None, "segments": (),
-            "two": (1.0, 1.0), "profile": PROFILE, "program": None, "place": point, "places": (), "route": (),
+            "two": (1.0, 1.0), "program": None, "place": point, "places": (), "route": (),
             "path": None, "turned": (), "reach": None, "sweep": None, "planar": 0j, "spot": 0j,
             "spots": (), "layers": (0,), "units": {"length": "m", "mass": "kg", "force": "N"},
         }  # fmt: skip
-        return values.get(kind, 0.0)
+        return wide_disc() if kind == "profile" else values.get(kind, 0.0)
+
+
+def wide_disc() -> Profile:
+    """Return what takes the place of a broken profile: any roller fits into it."""
+    from compoundkin.model.profiles import disc
+
+    return disc(1e9)
 
 
 def stands_in(value: Any) -> bool:

@@ -2,28 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.copies import nested_equal
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.files import document as doc
 from compoundkin.files import exact_numbers
-from compoundkin.files.document import DWELL, KIND, PROGRAM, SEGMENT
-from compoundkin.files.reader import default_name, load_table
+from compoundkin.files.document import DWELL, KIND, PROGRAM
+from compoundkin.files.reader import default_name
 from compoundkin.model.attributes import ANGLE, OF_POINTS, driver_and_rate
 from compoundkin.model.definition import CYLINDERS, DRIVES
 from compoundkin.model.elements import Drive, Expectation, Link
 from compoundkin.model.fields import Key, Kind
-from compoundkin.model.laws import FunctionLaw
-from compoundkin.model.laws.motion_programs import Program, ProgramSegment
 from compoundkin.model.loads import WRITTEN as LOADS
 from compoundkin.model.loads.gravity import Gravity
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.outlines import OUTLINES
-from compoundkin.model.pairs import WRITTEN
+from compoundkin.model.pairs import WRITTEN as PAIRS
 from compoundkin.model.prescribed_motion import PrescribedMotion
+
+if TYPE_CHECKING:
+    from compoundkin.model.laws.motion_programs import Program, ProgramSegment
 
 
 def document(mechanism: Mechanism) -> dict[str, Any]:
@@ -37,7 +38,7 @@ def document(mechanism: Mechanism) -> dict[str, Any]:
     """
     out: dict[str, Any] = {"format": doc.FORMATS[-1], **_head(mechanism)}
     out["links"] = {name: _link(item) for name, item in mechanism.rigid_links.items()}
-    for name in WRITTEN:
+    for name in PAIRS:
         out[name] = [_pair(item) for item in mechanism.items if getattr(item, "table", "") == name]
     out[CYLINDERS] = [_pair(item) for item in mechanism.cylinders.values()]
     out[DRIVES] = [_driven(mechanism, item) for item in mechanism.items if isinstance(item, Drive | PrescribedMotion)]
@@ -58,7 +59,7 @@ def _head(mechanism: Mechanism) -> dict[str, Any]:
 
 def _load(mechanism: Mechanism, item: Any) -> dict[str, Any]:
     """Return a mass, a load or an outline; its name where it has one of its own."""
-    amounts = load_table(mechanism, item)
+    amounts = _amounts(mechanism, item) if getattr(item, "amounts", ()) else {}
     angle = any(key.kind == "coordinate" for key in item.keys) and bool(doc.name_is_angle(mechanism, item.pair))
     out = {**_table(item, tuple(key for key in item.keys if key.name not in amounts), angle), **amounts}
     for key, over in getattr(item, "coordinates_over", {}).items():
@@ -68,6 +69,12 @@ def _load(mechanism: Mechanism, item: Any) -> dict[str, Any]:
             )
     said = [key.name for key in item.keys if key.name in out and (key.name != "name" or out["name"] != item.called)]
     return {name: out[name] for name in said}
+
+
+def _amounts(mechanism: Mechanism, item: Any) -> dict[str, Any]:
+    from compoundkin.files.law_tables import load_table
+
+    return load_table(mechanism, item)
 
 
 def _table(item: Any, keys: tuple[Key, ...], angle: bool = False) -> dict[str, Any]:
@@ -129,7 +136,7 @@ def _is_writable(held: Any) -> bool:
 
 
 def _drive(mechanism: Mechanism, item: Drive) -> dict[str, Any]:
-    if isinstance(item.law, FunctionLaw):
+    if not _is_writable(item.law):
         what, remedy = "a Python function cannot be written to a file", "write a time_table of its values instead"
         raise InvalidInput(Problem(f"drives.{item.name}.law", what, remedy))
     out = _table(item, type(item).keys, bool(doc.is_angle(mechanism, item)))
@@ -145,6 +152,12 @@ def _segment(item: ProgramSegment, keys: tuple[Key, ...], angle: bool) -> dict[s
     rise = {} if item.law == DWELL else {"rise": exact_numbers.coordinate(item.rise, angle)}
     said = tuple(key for key in keys if key.name != "over" or not item.is_fastest)
     return _table(item, said, angle) | rise
+
+
+def _turned(value: Iterable[ProgramSegment], angle: bool) -> list[dict[str, Any]]:
+    from compoundkin.files.law_tables import SEGMENT
+
+    return [_segment(one, SEGMENT, angle) for one in value]
 
 
 def _program(item: Program, angle: bool) -> Any:
@@ -209,7 +222,7 @@ WRITERS: dict[Kind, Callable[[Any, bool], Any]] = {
     "places": lambda value, _: [exact_numbers.point(one) for one in value],
     "route": lambda value, _: [exact_numbers.point(one) for one in value],
     "path": _tagged,
-    "turned": lambda value, angle: [_segment(one, SEGMENT, angle) for one in value],
+    "turned": lambda value, angle: _turned(value, angle),
     "program": lambda value, angle: _program(value, angle),
     "profile": lambda value, _: _tagged(value, value.oscillates),
     "coordinate": exact_numbers.coordinate,

@@ -8,9 +8,12 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import TURN
-from compoundkin.model.elements import Item, drive, link, mode
+from compoundkin.model.elements import drive, link, mode
+from compoundkin.model.fields import Item
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import cam, face, slide
+from compoundkin.model.pairs.cam import cam
+from compoundkin.model.pairs.face import face
+from compoundkin.model.pairs.prismatic import slide
 from compoundkin.model.profiles import DoubleCam, Synthesised
 
 # Five degrees from pose to pose.

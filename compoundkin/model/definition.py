@@ -7,17 +7,16 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, permutations
+from typing import TYPE_CHECKING
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode
+from compoundkin.model.elements import Drawn, Drive, Expectation, Link, Mode
+from compoundkin.model.fields import Item
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.loads.contract import Load, NamedParts
-from compoundkin.model.loads.friction import Friction
 from compoundkin.model.loads.gravity import Gravity
 from compoundkin.model.loads.mass import Mass
-from compoundkin.model.loads.motor import rotors
-from compoundkin.model.loads.pretension import Pretension
 from compoundkin.model.outlines import LinkOutline
 from compoundkin.model.pairs import Pair, Revolute, pairs_among
 from compoundkin.model.pairs.contract import Drivable, as_drivable
@@ -25,6 +24,10 @@ from compoundkin.model.pairs.cylinder import Cylinder
 from compoundkin.model.pairs.revolute import SEPARATORS
 from compoundkin.model.prescribed_motion import PrescribedMotion
 from compoundkin.model.units import Units
+
+if TYPE_CHECKING:
+    from compoundkin.model.loads.friction import Friction
+    from compoundkin.model.loads.pretension import Pretension
 
 # The tables of cylinders and of drivers in a mechanism file.
 CYLINDERS = "cylinders"
@@ -61,7 +64,7 @@ class LoadDefinition:
         stated = [item for item in self.items if isinstance(item, Mass)]
         found = {item.link: item if item.is_complete else item.completed(self.geometry.points[item.link])
                  for item in stated}  # fmt: skip
-        for link, inertia in rotors(self.loads.values()):
+        for link, inertia in filter(None, (load.rotor() for load in self.loads.values())):
             found[link] = replace(found[link], inertia=found[link].inertia + inertia)
         return found
 
@@ -87,11 +90,15 @@ class LoadDefinition:
     @cached_property
     def frictions(self) -> dict[str, Friction]:
         """The frictions by their pairs, or by the letter of a multiple pin for all its pairs."""
+        from compoundkin.model.loads.friction import Friction
+
         return {self._pair_meant(item.pair): item for item in self.items if isinstance(item, Friction)}
 
     @cached_property
     def pretensions(self) -> dict[str, Pretension]:
         """The pretensions by their belts."""
+        from compoundkin.model.loads.pretension import Pretension
+
         return {self._pair_meant(item.pair): item for item in self.items if isinstance(item, Pretension)}
 
     @cached_property

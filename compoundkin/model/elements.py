@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, TypeAlias, overload
+from typing import TYPE_CHECKING, Any, ClassVar, overload
 
 import numpy as np
 
@@ -16,18 +16,16 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr, short_repr
 from compoundkin.base.errors import InvalidMechanism, Problem
-from compoundkin.model.fields import Key
+from compoundkin.model.fields import Item, Key
 from compoundkin.model.geometry import FRAME, real, vector
-from compoundkin.model.laws import Law, as_law
-from compoundkin.model.loads import LoadElement
-from compoundkin.model.outlines import LinkOutline
-from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.cylinder import Cylinder
-from compoundkin.model.prescribed_motion import PrescribedMotion, as_path, as_prescribed
+from compoundkin.model.prescribed_motion import PrescribedMotion
+
+if TYPE_CHECKING:
+    from compoundkin.model.laws import Law
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Drive(ShortRepr):
+class Drive(ShortRepr, Item):
     """A driver: it prescribes the free coordinate of the pair between `link` and `on`.
 
     `values` (radians or a length, None for a full turn), `speed`, `acceleration` and `jerk` are numbers or
@@ -135,7 +133,13 @@ def drive(
         beside += [key for key, default in _DEFAULT_RATES.items() if not np.array_equal(given[key], default)]
         return _prescribed_motion(where, link, on, name, prescribed, time, law, beside)
     numbers = {key: real(f"{where}.{key}", value) for key, value in given.items()}
-    return Drive(name or link, link, on, pair, **numbers, law=as_law(f"{where}.law", law))
+    return Drive(name or link, link, on, pair, **numbers, law=None if law is None else _law_of(f"{where}.law", law))
+
+
+def _law_of(where: str, law: Any) -> Law | None:
+    from compoundkin.model.laws import as_law
+
+    return as_law(where, law)
 
 
 # The rates of a driver where none are given.
@@ -146,6 +150,8 @@ def _prescribed_motion(
     where: str, what: str, on: str, name: str, prescribed: dict[str, Any], time: Any, law: Any, beside: list[str]
 ) -> PrescribedMotion:
     """Return the prescribed motion of a point or of a link."""
+    from compoundkin.model.prescribed_paths import as_path, as_prescribed
+
     if beside:
         how = f"leave {', '.join(beside)} out"
         raise InvalidMechanism(Problem(f"{where}.{beside[0]}", "its motion is prescribed already", how))
@@ -153,14 +159,14 @@ def _prescribed_motion(
     if along is None and (time is not None or law is not None):
         what_is = "times and a law of the length of arc are those of a path"
         raise InvalidMechanism(Problem(where, what_is, "give along=, or the law itself as x=, y= or angle="))
-    path = None if along is None else as_path(f"{where}.along", along, time, as_law(f"{where}.law", law))
+    path = None if along is None else as_path(f"{where}.along", along, time, _law_of(f"{where}.law", law))
     laws = {word: as_prescribed(f"{where}.{word}", prescribed[word]) for word in ("x", "y", "angle")}
     is_link = prescribed["angle"] is not None
     return PrescribedMotion(name or what, "" if is_link else what, what if is_link else "", on, path, **laws)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Link(ShortRepr):
+class Link(ShortRepr, Item):
     """A rigid link: its name and its points.
 
     `points` maps each letter to its place in the link's own frame (complex, a number or an array), or to
@@ -182,7 +188,7 @@ class Link(ShortRepr):
 
 
 @dataclass(frozen=True)
-class Mode:
+class Mode(Item):
     """The assembly mode of the group that holds `links`. It is +1 or -1, as the group's kind defines it."""
 
     links: tuple[str, ...]
@@ -190,14 +196,14 @@ class Mode:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Drawn(ShortRepr):
+class Drawn(ShortRepr, Item):
     """Points of one pose in global coordinates, drawn exactly or roughly. They choose the assembly mode."""
 
     points: Mapping[str, Number]
 
 
 @dataclass(frozen=True)
-class Expectation:
+class Expectation(Item):
     """A published value of a quantity at given driver values, with a tolerance.
 
     `at` holds driver values (radians or lengths) and, for "speed", "acceleration", keys such as "crank.speed".
@@ -208,11 +214,6 @@ class Expectation:
     value: complex
     tolerance: float
     at: tuple[tuple[str, float], ...] = ()
-
-
-Item: TypeAlias = (
-    Link | Pair | Cylinder | Drive | PrescribedMotion | Mode | Drawn | Expectation | LoadElement | LinkOutline
-)
 
 
 @checked

@@ -7,8 +7,9 @@ as its metadata. The argument of its constructor, the key in files, the schema a
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, MutableMapping
 from dataclasses import MISSING, Field, dataclass, fields
+from importlib import import_module
 from typing import Any, Literal, ParamSpec, TypeVar
 
 from compoundkin.base.arguments import checked
@@ -63,6 +64,47 @@ Kind = Literal[
     "units", "spot", "spots", "layers", "amount", "planar",
     "number", "turn", "place", "places", "route", "path", "turned", "program", "profile", "reach", "sweep",
 ]  # fmt: skip
+
+
+class Item:
+    """What a mechanism is written with: links, pairs, drivers, loads, outlines and what is said of them."""
+
+    __slots__ = ()
+
+
+Named = TypeVar("Named")
+
+
+class LateKinds(MutableMapping[str, Named]):
+    """Kinds by a name, each written as "file.Class" of a folder; its file is imported when it is first asked for.
+
+    >>> kinds = LateKinds[type[Any]]("compoundkin.model.pairs", {"arcs": "arc.ArcSlot"})
+    >>> kinds["arcs"].title
+    'pin-in-arc pair'
+    """
+
+    def __init__(self, folder: str, places: Mapping[str, str]) -> None:
+        self._folder = folder
+        self._known: dict[str, str | Named] = {**places}
+
+    def __getitem__(self, name: str) -> Named:
+        kind = self._known[name]
+        if isinstance(kind, str):
+            file, _, word = kind.partition(".")
+            kind = self._known[name] = getattr(import_module(f"{self._folder}.{file}"), word)
+        return kind
+
+    def __setitem__(self, name: str, kind: Named) -> None:
+        self._known[name] = kind
+
+    def __delitem__(self, name: str) -> None:
+        del self._known[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._known)
+
+    def __len__(self) -> int:
+        return len(self._known)
 
 
 @dataclass(frozen=True)
@@ -225,7 +267,7 @@ _ONE, _TWO = ("length", "angle", "number", "turn", "coordinate", "rate", "span")
 def stated_numbers(item: Any) -> dict[str, Any]:
     """Return the numbers of an item by name: "offset", or "radii.0" of two.
 
-    >>> from compoundkin.model.pairs import gear
+    >>> from compoundkin.model.pairs.gear import gear
     >>> sorted(stated_numbers(gear("sun", "planet", carrier="arm", teeth=(20, 40))))
     ['pressure_angle', 'teeth.0', 'teeth.1']
     """
@@ -242,7 +284,7 @@ def stated_numbers(item: Any) -> dict[str, Any]:
 def changed_fields(item: Any, numbers: Mapping[str, Any]) -> dict[str, Any]:
     """Return the fields of an item that these numbers change, named as by `stated_numbers`.
 
-    >>> from compoundkin.model.pairs import gear
+    >>> from compoundkin.model.pairs.gear import gear
     >>> changed_fields(gear("sun", "planet", carrier="arm", teeth=(20, 40)), {"teeth.1": 30})
     {'teeth': (20.0, 30)}
     """

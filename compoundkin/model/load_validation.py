@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
 from compoundkin.base.errors import LikelySlip, Problem, suggestion, warn
 from compoundkin.model.attributes import TIME
 from compoundkin.model.definition import MechanismDefinition
-from compoundkin.model.loads.amounts import RATE, tables_of
-from compoundkin.model.loads.contract import Load, NamedParts
-from compoundkin.model.loads.friction import Friction
+from compoundkin.model.loads.contract import RATE, ListedLoad, Load, NamedParts
 from compoundkin.model.loads.gravity import Gravity
 from compoundkin.model.loads.mass import Mass, uniform_body
-from compoundkin.model.loads.motor import rotors
-from compoundkin.model.loads.pretension import Pretension
 from compoundkin.model.validation import PRINTABLE, broadcast_problems, is_finite, is_printable, point_shapes
 
 GRAVITY = "gravity"
@@ -25,7 +21,6 @@ GRAVITY = "gravity"
 SMALL_INERTIA = 1e-3
 # What of a load holds numbers, and may be an array over the motion.
 _LOAD_NUMBERS = ("length", "amount", "planar", "point", "spot", "coordinate")
-MassOrLoad: TypeAlias = Mass | Load | Friction | Pretension
 
 
 def load_problems(mechanism: MechanismDefinition, names: NamedParts, has_units: bool) -> list[Problem]:
@@ -47,17 +42,17 @@ def _rotors_without_masses(mechanism: MechanismDefinition, names: NamedParts) ->
     """Find rotors with an inertia on links without a mass, in whose inertia they would be."""
     heavy = {item.link for item in mechanism.items if isinstance(item, Mass)}
     for where, item in placed_loads(mechanism):
-        for link, _ in rotors([item.completed(names)] if isinstance(item, Load) else []):
-            if link and link not in heavy:
-                remedy = f'write mass("{link}", ...) too, or leave the inertia out'
-                yield Problem(f"{where}.inertia", f"{link!r}, which it turns, has no mass", remedy)
+        rotor = item.completed(names).rotor() if isinstance(item, Load) else None
+        if rotor is not None and (link := rotor[0]) and link not in heavy:
+            remedy = f'write mass("{link}", ...) too, or leave the inertia out'
+            yield Problem(f"{where}.inertia", f"{link!r}, which it turns, has no mass", remedy)
 
 
-def placed_loads(mechanism: MechanismDefinition) -> Iterator[tuple[str, MassOrLoad]]:
+def placed_loads(mechanism: MechanismDefinition) -> Iterator[tuple[str, ListedLoad]]:
     """Yield each mass and load with its place in a file."""
     count: dict[str, int] = {}
     for item in mechanism.items:
-        if isinstance(item, Mass | Load | Friction | Pretension):
+        if isinstance(item, ListedLoad):
             index = count.get(item.table, 0)
             count[item.table] = index + 1
             yield f"{item.table}[{index}]", item
@@ -71,7 +66,7 @@ def _without_units(mechanism: MechanismDefinition) -> Iterator[Problem]:
         yield Problem("units", what, 'write units={"length": "mm", "mass": "kg", "force": "N"}')
 
 
-def _load_numbers(item: MassOrLoad) -> Iterator[tuple[str, Any]]:
+def _load_numbers(item: ListedLoad) -> Iterator[tuple[str, Any]]:
     """Yield the numbers and arrays that an item holds, by their keys."""
     for key in item.keys:
         held = getattr(item, key.name)
@@ -92,12 +87,12 @@ def load_designs(mechanism: MechanismDefinition) -> Iterator[tuple[str, Any]]:
                 yield f"{where}.{key}", value[..., :1]
 
 
-def _invalid_load_numbers(where: str, item: MassOrLoad) -> Iterator[Problem]:
+def _invalid_load_numbers(where: str, item: ListedLoad) -> Iterator[Problem]:
     """Find values that are empty or not finite, and a mass that would change along the motion."""
     for key, value in _load_numbers(item):
         if not is_finite(value):
             yield Problem(f"{where}.{key}", "the value is empty or not finite")
-        elif isinstance(item, Mass | Friction) and np.ndim(value) and np.shape(value)[-1] > 1:
+        elif item.is_steady and np.ndim(value) and np.shape(value)[-1] > 1:
             what = f"it holds {np.shape(value)[-1]} numbers along the motion, in which it cannot change"
             yield Problem(f"{where}.{key}", what, "give one number, or one for each design: [[1.0], [2.0]]")
     for needed in item.keys:
@@ -105,14 +100,15 @@ def _invalid_load_numbers(where: str, item: MassOrLoad) -> Iterator[Problem]:
             yield Problem(f"{where}.{needed.name}", "it is missing", needed.doc)
 
 
-def _unknown_tables(where: str, item: MassOrLoad, names: NamedParts) -> Iterator[Problem]:
+def _unknown_tables(where: str, item: ListedLoad, names: NamedParts) -> Iterator[Problem]:
     """Find tables over unknown coordinates."""
     for key in item.amounts if isinstance(item, Load) else ():
         own = (TIME, RATE) if isinstance(item, Load) and item.has_rate else (TIME,)
-        for table in tables_of(getattr(item, key)):
-            if table.over not in ("", *own) and names.coordinate(table.over) is None:
-                what = f"there is no pair, pin or driver {table.over!r}"
-                yield Problem(f"{where}.{key}.over", what, suggestion(table.over, [*own, *names.pairs]))
+        held = getattr(item, key)
+        for over in (getattr(part, "over", "") for part in (held if isinstance(held, tuple) else (held,))):
+            if over not in ("", *own) and names.coordinate(over) is None:
+                what = f"there is no pair, pin or driver {over!r}"
+                yield Problem(f"{where}.{key}.over", what, suggestion(over, [*own, *names.pairs]))
 
 
 def _repeated_loads(mechanism: MechanismDefinition, names: NamedParts) -> Iterator[Problem]:
@@ -129,9 +125,9 @@ def _repeated_loads(mechanism: MechanismDefinition, names: NamedParts) -> Iterat
         seen.add((kind, meant))
 
 
-def _load_identity(item: MassOrLoad, names: NamedParts) -> object:
+def _load_identity(item: ListedLoad, names: NamedParts) -> object:
     """Return what may have one such item only: a name, or a pair by its links and points."""
-    pair = names.pair(item.pair) if isinstance(item, Friction | Pretension) else None
+    pair = names.pair(item.property_of) if item.property_of else None
     return item.name if pair is None else (pair.title, pair.letters, frozenset(pair.members))
 
 

@@ -22,13 +22,13 @@ from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.series import constant
 from compoundkin.model.attributes import CATALOGUE, DERIVED
 from compoundkin.model.definition import MechanismDefinition, MechanismNames
-from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode
+from compoundkin.model.elements import Drawn, Drive, Expectation, Link, Mode
+from compoundkin.model.fields import Item
 from compoundkin.model.geometry import FRAME, Geometry, link_from_drawing, pose_from_points, real
 from compoundkin.model.load_validation import load_problems, load_warnings
 from compoundkin.model.outline_validation import crossed_polygons, outline_problems
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import DrawnPair, Ends, as_orienting, as_turn_counting, misfit_problems
-from compoundkin.model.pairs.profile_contact import as_profile_contact
 from compoundkin.model.prescribed_motion import PrescribedMotion
 from compoundkin.model.units import checked_units
 from compoundkin.model.validation import definition_problems, missing_places
@@ -134,7 +134,7 @@ class Mechanism(MechanismDefinition, DisplaysPicture, ExplainsAttributes):
         """The poses of links in the drawing. The angle of a link of one point may follow from a pair.
 
         >>> from compoundkin.model.elements import drawn, link
-        >>> from compoundkin.model.pairs import slide
+        >>> from compoundkin.model.pairs.prismatic import slide
         >>> guide, way = link("frame", A=0), slide("block", on="frame", through="A", angle=0.5)
         >>> Mechanism("m", guide, link("block", B=0), way, drawn(A=0, B=1)).drawn_poses["block"].angle.c[0].round(6)
         np.float64(0.5)
@@ -148,7 +148,7 @@ class Mechanism(MechanismDefinition, DisplaysPicture, ExplainsAttributes):
     @property
     def _profiles(self) -> float:
         """The size of the largest profile."""
-        return max((own.extent for pair in self.written_pairs if (own := as_profile_contact(pair))), default=0.0)
+        return max((pair.extent for pair in self.written_pairs), default=0.0)
 
     @cached_property
     def names(self) -> MechanismNames:
@@ -166,7 +166,7 @@ class Mechanism(MechanismDefinition, DisplaysPicture, ExplainsAttributes):
         >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=1), drive("crank"))
         >>> crank.replace(link("crank", A=0, B=2)).links["crank"].points["B"]
         (2+0j)
-        >>> from compoundkin.model.pairs import slide
+        >>> from compoundkin.model.pairs.prismatic import slide
         >>> guided = crank.replace(slide("crank", on="frame", through="O"), link("frame", O=0), without="crank.A")
         >>> sorted(guided.pins), [pair.name for pair in guided.written_pairs]
         ([], ['crank/frame'])
@@ -314,7 +314,7 @@ def _identity(item: Item) -> tuple[Any, ...]:
         return Mode, frozenset(item.links)
     if isinstance(item, Drawn):
         return (Drawn,)
-    return type(item), (item.quantity, item.at) if isinstance(item, Expectation) else item.name
+    return type(item), (item.quantity, item.at) if isinstance(item, Expectation) else getattr(item, "name", "")
 
 
 def _plain(mechanism: Mechanism) -> list[Any]:

@@ -12,7 +12,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr, short_repr
 from compoundkin.base.errors import InvalidMechanism, Problem
-from compoundkin.model.fields import DeclaredKeys, link_key, spot_key, value_key
+from compoundkin.model.fields import DeclaredKeys, Item, link_key, spot_key, value_key
 from compoundkin.model.geometry import real, vector
 from compoundkin.model.loads.contract import NO_RENAMING
 
@@ -21,7 +21,7 @@ OUTLINES = "outlines"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LinkOutline(ShortRepr):
+class LinkOutline(ShortRepr, Item):
     """An outline of a link: bars or a plate, a disc, a polygon, pins.
 
     It is on one layer or several. The outline of a link is all that is written of it together.

@@ -10,17 +10,18 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from compoundkin.base.arguments import checked, planar_numbers, real_numbers
 from compoundkin.base.arrays import Number
 from compoundkin.base.copies import CopiesFields, CopiesFunction
 from compoundkin.base.curves import Analytic, Curve
 from compoundkin.base.curves.curve import ArcLength
-from compoundkin.base.display import ShortRepr
+from compoundkin.base.display import ShortRepr, short_repr
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem
 from compoundkin.base.series import Series, planar_series
 from compoundkin.model.fields import Key
-from compoundkin.model.laws import FunctionLaw, Law, TimeTable
+from compoundkin.model.laws import FunctionLaw, Law, TimeTable, as_law, constant_speed
 from compoundkin.model.laws.constant_laws import ComparedByValue
-from compoundkin.model.profiles import Profile
+from compoundkin.model.profiles import PointsProfile, Profile
 
 
 class Path(CopiesFields, ComparedByValue, ABC):
@@ -243,3 +244,80 @@ class FunctionPath(CopiesFunction, Path):
         """Return place and derivatives at times t (seconds). Raises InvalidInput where the function fails."""
         x, y = (FunctionLaw(FunctionComponent(self.function, part)).coordinate(t, order) for part in ("real", "imag"))
         return planar_series(x, y)
+
+
+KINDS: tuple[type[Path], ...] = (TimedPlaces, LinePath, CurvePath, FunctionPath)
+# Those that a mechanism file can hold, by their name there.
+WRITTEN: dict[str, type[Path]] = {kind.kind: kind for kind in KINDS if kind.keys}
+TIME_NEEDED = "give its times with time=, or the length of arc in time with law="
+
+
+@checked
+def place_table(times: Any, places: Any, *, degree: int = 5, repeat: bool = False) -> TimedPlaces:
+    """Return the path through places at times (seconds). A spline through them, complex or (n, 2).
+
+    >>> place_table([0, 1, 2], [(0, 0), (1, 0), (2, 2)]).span
+    (0.0, 2.0)
+    """
+    return TimedPlaces(times, _places("along.places", places), degree, repeat)
+
+
+def as_path(where: str, along: Any, time: Any, law: Law | None) -> Path:
+    """Return the path of a point. Raises InvalidMechanism naming `where` for anything that is not one.
+
+    >>> as_path("drives.G.along", lambda t: 1j * t, None, None).kind
+    'function'
+    """
+    try:
+        return _path_from(where, along, time, law)
+    except InvalidMechanism as error:
+        placed = (replace(p, where=where + p.where.removeprefix("along")) if p.where.startswith("along") else p
+                  for p in error.problems)  # fmt: skip
+        raise InvalidMechanism(placed) from None
+
+
+def _path_from(where: str, along: Any, time: Any, law: Law | None) -> Path:
+    if isinstance(along, Path) or callable(along):
+        if time is not None or law is not None:
+            raise InvalidMechanism(Problem(where, "it is a function of time already", "leave time and law out"))
+        return along if isinstance(along, Path) else FunctionPath(along)
+    if time is not None and law is not None:
+        raise InvalidMechanism(
+            Problem(where, "times and a law both prescribe the motion along it", "leave one of them out")
+        )
+    if isinstance(along, Profile) and law is None:
+        raise InvalidMechanism(Problem(where, "a curve is not a motion", "give law=, the length of arc in time"))
+    if isinstance(along, Profile) and law is not None:
+        return CurvePath(along, law)
+    places = _places(where, along)
+    if time is not None:
+        return TimedPlaces(real_numbers(f"{where}.time", time, InvalidMechanism), places)
+    if law is None:
+        raise InvalidMechanism(Problem(where, "places are not a motion", TIME_NEEDED))
+    if len(places) < 4:
+        return LinePath(places, law)
+    return CurvePath(PointsProfile(places, closed=places[0] == places[-1]), law)
+
+
+def as_prescribed(where: str, law: Any) -> Law | None:
+    """Return the law of a prescribed coordinate: a law, a Python function of time, or a constant number."""
+    if law is None or callable(law) or isinstance(law, Law):
+        return as_law(where, law)
+    number = real_numbers(where, law, InvalidMechanism)
+    if number.ndim:
+        how = "write laws.time_table(times, values)"
+        raise InvalidMechanism(Problem(where, "several values are not a motion without times", how))
+    if not np.isfinite(number):
+        raise InvalidMechanism(Problem(where, f"{number} is not a finite number", "write a finite number"))
+    return constant_speed(0.0, float(number))
+
+
+def _places(where: str, places: Any) -> tuple[complex, ...]:
+    """Return places given as complex numbers, as (x, y), or as an array (n, 2)."""
+    found = planar_numbers(where, places, InvalidMechanism)
+    if found.ndim == 2 and found.shape[1] == 2 and not np.any(found.imag):
+        found = found[:, 0].real + 1j * found[:, 1].real
+    if found.ndim != 1 or len(found) < 2 or not np.isfinite(found).all():
+        what = f"{short_repr(places)} are not two places or more"
+        raise InvalidMechanism(Problem(where, what, "write [(x, y), (x, y), ...], complex numbers, or an array (n, 2)"))
+    return tuple(complex(place) for place in found)

@@ -13,8 +13,8 @@ from compoundkin.base.arrays import LONGEST, SHORTEST, Number
 from compoundkin.base.errors import Problem, suggestion
 from compoundkin.model.attributes import RATES, TIME, VALUE, driver_and_rate
 from compoundkin.model.definition import CYLINDERS, DRIVES, MechanismDefinition
-from compoundkin.model.elements import Drive, Item, Link
-from compoundkin.model.fields import Key
+from compoundkin.model.elements import Drive, Link
+from compoundkin.model.fields import Item, Key
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.cylinder import Cylinder

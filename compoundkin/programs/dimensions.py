@@ -26,7 +26,7 @@ from compoundkin.model.elements import Drive, Expectation, Link
 from compoundkin.model.fields import changed_fields, stated_numbers
 from compoundkin.model.geometry import vector
 from compoundkin.model.laws.law_numbers import law_numbers, law_of_designs, law_with
-from compoundkin.model.loads import Mass
+from compoundkin.model.loads.mass import Mass
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import pairs_among
 from compoundkin.model.pairs.contract import Ends, drawn_fields
@@ -387,7 +387,7 @@ _NUMBERS, _VECTORS = ("length", "angle", "number", "coordinate", "rate", "amount
 def load_numbers(item: Any) -> dict[str, Number]:
     """Return the numbers of a mass, a load or a friction by name: "stiffness", "at.x".
 
-    >>> from compoundkin.model.loads import spring
+    >>> from compoundkin.model.loads.spring import spring
     >>> sorted(load_numbers(spring("arm", 2 + 1j, at="S", stiffness=900)))
     ['free_length', 'point.x', 'point.y', 'preload', 'stiffness']
     """

@@ -23,7 +23,7 @@ from compoundkin.structure.cycles import cycle_basis, find
 from compoundkin.structure.mobility_count import Body, Group
 from compoundkin.structure.system import Constraint, System
 
-_RANK = {kind.code: rank for rank, kind in enumerate(KINDS)}
+_RANK = {code: rank for rank, code in enumerate(KINDS)}
 # The least number of links in a loop that counts as a changeable contour: a loop of three is rigid.
 _CHANGEABLE = 4
 _LEAST_CLASS = 2

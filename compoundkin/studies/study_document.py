@@ -12,8 +12,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from compoundkin.base.errors import CompoundkinError, InvalidInput, InvalidMechanism, Problem, suggestion
-from compoundkin.files import exact_numbers, load, schema
-from compoundkin.files.json_schema import DIALECT, FRAGMENTS, closed_table
+from compoundkin.files import exact_numbers, load
+from compoundkin.files.json_schema import DIALECT, FRAGMENTS, closed_table, schema
 from compoundkin.files.mechanism_files import written_text
 from compoundkin.files.parsed_document import heading, known_syntax
 from compoundkin.files.read_values import bad, coordinate, described, numbers, place, wrong

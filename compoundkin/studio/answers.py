@@ -227,10 +227,11 @@ def _mobility(reading: Reading) -> dict[str, Any]:
         moving, passive = len(reading.letters.keys() - {FRAME}), 0
         carried = [letter for letters in reading.letters.values() for letter in letters]
         held = {2: len(carried) - len(set(carried))}
-        for name, kind in WRITTEN.items():
+        for name in WRITTEN:
             tables = reading.document.get(name)
             if isinstance(tables, list):
-                held[kind.held] = held.get(kind.held, 0) + len(tables)
+                own = WRITTEN[name].held
+                held[own] = held.get(own, 0) + len(tables)
     freedoms = 3 * moving - sum(h * n for h, n in held.items()) - passive
     terms = "".join(f" − {f'{h}·' if h > 1 else ''}{n}" for h, n in sorted(held.items(), reverse=True) if n)
     minus = f" − {passive}" if passive else ""

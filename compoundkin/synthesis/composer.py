@@ -16,10 +16,11 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.kinematics.groups import DYADS
-from compoundkin.model.elements import Item, drawn, drive, link
+from compoundkin.model.elements import drawn, drive, link
+from compoundkin.model.fields import Item
 from compoundkin.model.geometry import FRAME, vector
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import slide
+from compoundkin.model.pairs.prismatic import slide
 from compoundkin.synthesis.chains import AssurGroup, assur_group
 from compoundkin.synthesis.chains.joints import REVOLUTE, SLIDE
 from compoundkin.synthesis.chains.skeletons import layout, lettered

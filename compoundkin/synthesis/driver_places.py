@@ -5,19 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import TypeVar
+from typing import TypeVar, cast
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.model.definition import driver_independent_name
-from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode
+from compoundkin.model.elements import Drawn, Drive, Expectation, Link, Mode
+from compoundkin.model.fields import Item
 from compoundkin.model.geometry import FRAME
-from compoundkin.model.loads.contract import Load
-from compoundkin.model.loads.friction import Friction
+from compoundkin.model.loads.contract import ListedLoad
 from compoundkin.model.loads.gravity import Gravity
 from compoundkin.model.loads.mass import Mass
-from compoundkin.model.loads.pretension import Pretension
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.outlines import LinkOutline
 from compoundkin.model.pairs import Pair
@@ -134,15 +133,17 @@ def renamed(item: Item, names: Mapping[str, str]) -> Item:
         return replace(item, name=names.get(item.name, item.name))
     if isinstance(item, Drive | PrescribedMotion):
         return replace(item, link=names.get(item.link, item.link), on=names.get(item.on, item.on))
-    if isinstance(item, Mass | Load | Friction | Pretension | LinkOutline):
+    if isinstance(item, ListedLoad | LinkOutline):
         return item.renamed(names)
-    return item if isinstance(item, Mode | Drawn | Expectation | Gravity) else renamed_pair(item, names)
+    if isinstance(item, Mode | Drawn | Expectation | Gravity):
+        return item
+    return renamed_pair(cast("Pair | Cylinder", item), names)  # nothing else is written
 
 
 def renamed_pair(pair: Joint, names: Mapping[str, str]) -> Joint:
     """Return a written pair or cylinder between renamed links, under its own name.
 
-    >>> from compoundkin.model.pairs import slide
+    >>> from compoundkin.model.pairs.prismatic import slide
     >>> renamed_pair(slide("block", on="frame", at="C", through="F"), {"frame": "bar"}).members
     ('bar', 'block')
     """
@@ -157,11 +158,11 @@ def without_driver(item: Item, mechanism: Mechanism, drive: Drive | None) -> Ite
     """Return an element that names the pair of a driver in place of the driver.
 
     >>> from compoundkin.model.elements import drive, link
-    >>> from compoundkin.model.loads import effort
+    >>> from compoundkin.model.loads.attachments import effort
     >>> crank = Mechanism("m", link("frame", A=0), link("crank", A=0, B=1), drive("crank"))
     >>> without_driver(effort("crank", 2.0), crank, crank.drives[0]).pair
     'A(frame-crank)'
     """
-    if drive is None or not isinstance(item, Load | Friction):
+    if drive is None or not isinstance(item, ListedLoad):
         return item
     return item.renamed({}, {drive.name: driver_independent_name(mechanism, drive.name)})

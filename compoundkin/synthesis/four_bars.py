@@ -8,7 +8,7 @@ import numpy as np
 
 from compoundkin.model.elements import drawn, link
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import slide
+from compoundkin.model.pairs.prismatic import slide
 from compoundkin.synthesis.linkage_poses import (
     DRAWN,
     FOLDED,

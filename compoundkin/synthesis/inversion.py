@@ -23,7 +23,8 @@ from compoundkin.kinematics.driver_values import fit, mapped
 from compoundkin.kinematics.gaps import gaps
 from compoundkin.kinematics.motion import PairMotion
 from compoundkin.model.definition import Pins, driven_pair
-from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode, drawn, drive
+from compoundkin.model.elements import Drawn, Drive, Expectation, Link, Mode, drawn, drive
+from compoundkin.model.fields import Item
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.laws import MotionTable
 from compoundkin.model.mechanism import Mechanism, available_outputs

@@ -8,7 +8,8 @@ from typing import TypeAlias
 import numpy as np
 
 from compoundkin.base.arrays import TURN
-from compoundkin.model.elements import Drive, Item, drawn, drive
+from compoundkin.model.elements import Drive, drawn, drive
+from compoundkin.model.fields import Item
 from compoundkin.model.geometry import deg
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.synthesis.linkage_words import Closure, wrong

@@ -15,11 +15,15 @@ from compoundkin.base.arrays import TURN
 from compoundkin.base.errors import OTHER_WORDS, Problem, UnknownName, plain_word, suggestion
 from compoundkin.model.attributes import POSITION
 from compoundkin.model.cam_mechanism import cam_mechanism
-from compoundkin.model.elements import Item, drawn, drive, link
+from compoundkin.model.elements import drawn, drive, link
+from compoundkin.model.fields import Item
 from compoundkin.model.laws import dwell, fall, program
 from compoundkin.model.laws import rise as rise_by
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import belt, gear, slide, slot
+from compoundkin.model.pairs.belt import belt
+from compoundkin.model.pairs.gear import gear
+from compoundkin.model.pairs.prismatic import slide
+from compoundkin.model.pairs.slot import slot
 from compoundkin.model.profiles.synthesised import synthesise
 from compoundkin.synthesis.four_bars import four_bar, inverted_slider_crank, quick_return, slider_crank
 from compoundkin.synthesis.linkage_poses import (

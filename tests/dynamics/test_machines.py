@@ -12,8 +12,8 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.wrenches import Wrench
-from compoundkin.model.loads import Force
 from compoundkin.model.loads.contract import LoadedPoses
+from compoundkin.model.loads.force import Force
 from tests import catalog
 from tests.dynamics.test_power import UNITS, slider_crank
 

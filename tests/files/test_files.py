@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from compoundkin.base.errors import InvalidInput
-from compoundkin.files import dumps, load, loads, save
+from compoundkin.files import dumps, load, loads
 from compoundkin.files.atomic import write_atomically
+from compoundkin.files.saved_files import save
 from compoundkin.model.elements import link
 from compoundkin.model.mechanism import Mechanism
 

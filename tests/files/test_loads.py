@@ -15,7 +15,8 @@ from jsonschema import Draft202012Validator
 
 import compoundkin as ck
 from compoundkin.errors import InvalidInput, InvalidMechanism
-from compoundkin.files import dumps, loads, schema
+from compoundkin.files import dumps, loads
+from compoundkin.files.json_schema import schema
 from tests.support import examples
 
 VALIDATOR = Draft202012Validator(schema())

@@ -13,11 +13,16 @@ from hypothesis.extra.numpy import arrays
 from jsonschema import Draft202012Validator
 
 from compoundkin.base.errors import InvalidMechanism
-from compoundkin.files import dumps, loads, schema
+from compoundkin.files import dumps, loads
+from compoundkin.files.json_schema import schema
 from compoundkin.model.elements import drive, link
 from compoundkin.model.geometry import deg
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import Pair, belt, gear, rack, roll, roll_around
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.belt import belt
+from compoundkin.model.pairs.gear import gear
+from compoundkin.model.pairs.rack import rack
+from compoundkin.model.pairs.rolling import roll, roll_around
 from tests.support import examples
 
 SHAPES = ((), (), (), (5,), (2, 1), (2, 5))

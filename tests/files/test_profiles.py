@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
 from compoundkin.base.errors import InvalidInput, InvalidMechanism
-from compoundkin.files import dumps, loads, schema
+from compoundkin.files import dumps, loads
+from compoundkin.files.json_schema import schema
 from compoundkin.files.writer import document
 from compoundkin.kinematics import solve
 from compoundkin.model.elements import drive, link, mode
@@ -19,7 +20,11 @@ from compoundkin.model.geometry import deg
 from compoundkin.model.laws.cam_laws import LAWS
 from compoundkin.model.laws.motion_programs import Program, ProgramSegment, dwell, fall, program, rise
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import arc, cam, face, slide, slot
+from compoundkin.model.pairs.arc import arc
+from compoundkin.model.pairs.cam import cam
+from compoundkin.model.pairs.face import face
+from compoundkin.model.pairs.prismatic import slide
+from compoundkin.model.pairs.slot import slot
 from compoundkin.model.profiles import Profile, Synthesised, disc, formula, profile
 from tests.support import examples
 
@@ -67,8 +72,8 @@ class Unchecked(Mechanism):
 @settings(max_examples=examples(200), deadline=None)
 @given(made)
 def test_a_made_profile_is_read_as_it_was_written(item: Synthesised) -> None:
+    from compoundkin.files.law_tables import profile as read_profile
     from compoundkin.files.reader import TAGGED
-    from compoundkin.files.reader import profile as read_profile
     from compoundkin.files.recovery import Recovery
 
     whole = document(Unchecked(link("frame", A=0), cam("follower", on="cam", at="P", profile=item)))

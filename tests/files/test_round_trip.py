@@ -18,7 +18,7 @@ from compoundkin.files import dumps, exact_numbers, load, loads
 from compoundkin.model.elements import Expectation, Link, drawn, drive, expect, link, mode
 from compoundkin.model.geometry import deg, polar
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import slide
+from compoundkin.model.pairs.prismatic import slide
 from tests.catalog import FILES, each
 from tests.support import examples
 

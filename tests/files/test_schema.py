@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 from jsonschema import Draft202012Validator
 
-from compoundkin.files import dumps, load, schema
+from compoundkin.files import dumps, load
+from compoundkin.files.json_schema import schema
 from tests.catalog import FILES, each
 
 PUBLISHED = Path(__file__).parents[2] / "docs" / "mechanism.schema.json"

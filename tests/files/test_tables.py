@@ -14,7 +14,8 @@ from click.testing import CliRunner
 from compoundkin.base.errors import InvalidInput, UnassembledPoses, UnknownName
 from compoundkin.base.suffixes import SUFFIXES
 from compoundkin.cli import cli
-from compoundkin.files import load, save
+from compoundkin.files import load
+from compoundkin.files.saved_files import save
 from compoundkin.kinematics import Motion, solve
 from compoundkin.model.elements import drive, link
 from compoundkin.model.mechanism import Mechanism

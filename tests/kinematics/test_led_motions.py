@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import compoundkin as ck
-from compoundkin.model.elements import Drawn, Drive, Expectation, Item
+from compoundkin.model.elements import Drawn, Drive, Expectation
+from compoundkin.model.fields import Item
 from tests.catalog import mechanism as loaded
 
 LENGTH, TURN = 90.0, 2.0 * np.pi

@@ -19,15 +19,15 @@ from jsonschema import Draft202012Validator
 
 import compoundkin as ck
 from compoundkin.cli import cli
-from compoundkin.files import dumps, loads, schema
+from compoundkin.files import dumps, loads
+from compoundkin.files.json_schema import schema
 from compoundkin.model.laws import FunctionLaw, Law
 from compoundkin.model.laws.function_law import differentiate_function
 from compoundkin.model.laws.law_numbers import derivative_jumps
 from compoundkin.model.laws.motion_programs import Program, program, rise
 from compoundkin.model.laws.path_coordinate import PathCoordinate
 from compoundkin.model.laws.table_laws import TimeTable
-from compoundkin.model.prescribed_motion import place_table
-from compoundkin.model.prescribed_paths import LinePath
+from compoundkin.model.prescribed_paths import LinePath, place_table
 from tests.model.test_programs import MOVING, programs
 from tests.support import examples
 

@@ -10,7 +10,7 @@ from compoundkin.base.errors import Problem, suggestion
 from compoundkin.files import load
 from compoundkin.model.elements import Drive
 from compoundkin.model.geometry import vector
-from compoundkin.model.pairs import slide
+from compoundkin.model.pairs.prismatic import slide
 
 
 def four_bar(**crank: object) -> ck.Mechanism:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from compoundkin.model.elements import drive, link
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import slide
+from compoundkin.model.pairs.prismatic import slide
 from compoundkin.structure import Structure, decompose
 from tests.support import examples
 

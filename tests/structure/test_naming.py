@@ -4,7 +4,7 @@ import pytest
 
 from compoundkin.model.elements import drive, link
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import slide
+from compoundkin.model.pairs.prismatic import slide
 from compoundkin.structure import decompose, roman
 
 

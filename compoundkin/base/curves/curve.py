@@ -115,6 +115,11 @@ class Curve(ABC):
         """Whether the area inside is on the left. An open curve is closed by its chord."""
         return self.samples.area > 0.0
 
+    @property
+    def outer_side(self) -> float:
+        """+1 where the normal of a closed curve points outward, -1 inward; +1 for an open curve."""
+        return 1.0 if not self.closed or self.is_counterclockwise else -1.0
+
     @cached_property
     def length(self) -> float:
         """The length of arc from `low` to `high`."""
@@ -185,7 +190,11 @@ class Curve(ABC):
         On a closed curve a span may run past `high`; spans shorter than the distance of two samples are not seen.
         Differentiating C + d n with Frenet's ``n' = curvature |C'| tangent`` gives ``|C'| (1 + d curvature)`` along it.
         """
-        return spans(self.samples, self.low, self.high, lambda s: 1.0 + distance * self.curvature(s))
+        return self.spans(lambda s: 1.0 + distance * self.curvature(s))
+
+    def spans(self, margin: Callable[[Number], Number]) -> tuple[tuple[float, float], ...]:
+        """Return the spans of the parameter where a margin is not positive. On a closed curve the last may run past."""
+        return spans(self.samples, self.low, self.high, margin)
 
 
 @dataclass(frozen=True)

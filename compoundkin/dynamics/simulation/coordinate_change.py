@@ -24,7 +24,8 @@ from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.elements import Drive, Expectation, Item, Mode
+from compoundkin.model.elements import Drive, Expectation, Mode
+from compoundkin.model.fields import Item
 from compoundkin.model.laws import Law
 from compoundkin.model.mechanism import Mechanism, available_outputs
 from compoundkin.model.pairs import Pair

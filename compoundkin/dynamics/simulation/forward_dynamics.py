@@ -92,7 +92,8 @@ def simulate(
     increase; UnknownName for unknown drivers.
 
     >>> from compoundkin.model.elements import drive, link
-    >>> from compoundkin.model.loads import gravity, mass
+    >>> from compoundkin.model.loads.gravity import gravity
+    >>> from compoundkin.model.loads.mass import mass
     >>> bar, units = link("bar", A=0, B=1), {"length": "m", "mass": "kg", "force": "N"}
     >>> weight = mass("bar", 1.0, at="B"), gravity(0, -9.81)
     >>> pendulum = Mechanism("Pendulum", link("frame", A=0), bar, drive("bar"), *weight, units=units)

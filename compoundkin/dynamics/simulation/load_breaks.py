@@ -17,8 +17,8 @@ import numpy as np
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.errors import InvalidInput
 from compoundkin.model.attributes import TIME
-from compoundkin.model.loads.amounts import RATE, LoadFunction, LoadTable, corners
-from compoundkin.model.loads.contract import Load, LoadedPoses
+from compoundkin.model.loads.amounts import LoadFunction, LoadTable, corners
+from compoundkin.model.loads.contract import RATE, Load, LoadedPoses
 from compoundkin.model.mechanism import Mechanism
 
 # Functions are sampled at so many places of a simulation, of a turn, or of the mechanism's size. Between two of them is

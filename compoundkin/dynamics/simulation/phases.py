@@ -27,8 +27,8 @@ from compoundkin.dynamics.simulation.stop_contacts import ContactState, StopCont
 from compoundkin.kinematics import solve
 from compoundkin.kinematics.configuration import Configuration, dimensions_at, placed_at
 from compoundkin.kinematics.motion import Motion
-from compoundkin.model.elements import Drawn, Drive, Expectation, Item, Link, Mode
-from compoundkin.model.fields import point_fields
+from compoundkin.model.elements import Drawn, Drive, Expectation, Link, Mode
+from compoundkin.model.fields import Item, point_fields
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.laws import Law, constant_speed
 from compoundkin.model.loads.attachments import PairLoad, PairProperty

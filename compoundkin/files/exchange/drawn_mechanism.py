@@ -29,11 +29,20 @@ from compoundkin.files.exchange.drawing import (
 from compoundkin.files.exchange.foreign_texts import ForeignNames, letters
 from compoundkin.files.read_values import spaced
 from compoundkin.model.attributes import OF_POINTS
-from compoundkin.model.elements import Drive, Item, drawn, drive, link
+from compoundkin.model.elements import Drive, drawn, drive, link
+from compoundkin.model.fields import Item
 from compoundkin.model.geometry import FRAME
-from compoundkin.model.loads import force, gravity, mass
+from compoundkin.model.loads.force import force
+from compoundkin.model.loads.gravity import gravity
+from compoundkin.model.loads.mass import mass
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import Pair, arc, belt, gear, rack, slide, slot
+from compoundkin.model.pairs import Pair
+from compoundkin.model.pairs.arc import arc
+from compoundkin.model.pairs.belt import belt
+from compoundkin.model.pairs.gear import gear
+from compoundkin.model.pairs.prismatic import slide
+from compoundkin.model.pairs.rack import rack
+from compoundkin.model.pairs.slot import slot
 
 # A mechanism of more elements than this takes longer to look at than anybody waits; the largest known have hundreds.
 MOST = 2000

@@ -18,12 +18,17 @@ from compoundkin.files.exchange.content import Content, JsonRecord, Problems, pa
 from compoundkin.files.exchange.contract import Imported, Readable
 from compoundkin.files.exchange.foreign_texts import ForeignNames
 from compoundkin.model.attributes import VELOCITY
-from compoundkin.model.elements import Drive, Item, drawn, drive, link
+from compoundkin.model.elements import Drive, drawn, drive, link
+from compoundkin.model.fields import Item
 from compoundkin.model.geometry import FRAME
-from compoundkin.model.loads import Gravity, damper, force, mass, spring, torque
+from compoundkin.model.loads.damper import damper
+from compoundkin.model.loads.force import force, torque
+from compoundkin.model.loads.gravity import Gravity
+from compoundkin.model.loads.mass import mass
+from compoundkin.model.loads.spring import spring
 from compoundkin.model.mechanism import Mechanism
-from compoundkin.model.pairs import slide
 from compoundkin.model.pairs.cylinder import cylinder
+from compoundkin.model.pairs.prismatic import slide
 from compoundkin.structure import decompose
 
 

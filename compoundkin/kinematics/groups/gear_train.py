@@ -16,7 +16,6 @@ from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.pair_sides import MountedBody, Reason, alone
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import Drivable, Ends, as_drivable, as_turn_counting, constraint_scales
-from compoundkin.model.pairs.geared import as_geared
 from compoundkin.structure.mobility_count import Body, Group
 
 # A higher pair whose closure a coordinate changes by less than this (both in parts of the size, or radians) does not
@@ -70,7 +69,7 @@ class GearTrainSolver(GroupSolver):
             mount, wheel = as_drivable(lower), as_turn_counting(higher)
             if mount and wheel and wheel.is_affine(lower, own):
                 return cls(index, group, size, ((mount, group.bodies[0]),), (higher,))
-        highers = tuple(pair for pair in pairs if as_geared(pair))
+        highers = tuple(pair for pair in pairs if pair.is_geared)
         pins = [pin for pair in pairs if pair.is_simple and pair.free_is_angle and (pin := as_drivable(pair))]
         if not highers or len(pins) + len(highers) < len(pairs) or len(pins) != len(group.bodies):
             return None

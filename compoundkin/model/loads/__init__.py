@@ -1,79 +1,34 @@
-"""Masses, gravity and loads as they are written: one file each, and this registry."""
+"""Masses, gravity and loads as they are written: one file each, and this registry.
+
+A load and the word that writes it are imported from its file, `loads.spring`. The registry knows loads by their tables
+in files and imports theirs when they are first asked for: most mechanisms have none.
+"""
 
 from __future__ import annotations
 
-from typing import Any, TypeAlias
+from compoundkin.model.fields import LateKinds
+from compoundkin.model.loads.contract import ListedLoad, Load, LoadElement
 
-from compoundkin.model.loads.attachments import Effort, PairLoad, effort
-from compoundkin.model.loads.contract import Load
-from compoundkin.model.loads.damper import Damper, PairDamper, damper
-from compoundkin.model.loads.force import Force, Torque, force, torque
-from compoundkin.model.loads.friction import Friction, friction
-from compoundkin.model.loads.gravity import Gravity, gravity
-from compoundkin.model.loads.latch import Latch, Release, latch, release
-from compoundkin.model.loads.mass import Mass, mass
-from compoundkin.model.loads.motor import Motor, motor
-from compoundkin.model.loads.pressure import Pressure, pressure
-from compoundkin.model.loads.pretension import Pretension, pretension
-from compoundkin.model.loads.spring import PairSpring, Spring, spring
-from compoundkin.model.loads.stop import Stop, stop
-
-__all__ = [
-    "KINDS",
-    "WRITTEN",
-    "Damper",
-    "Effort",
-    "Force",
-    "Friction",
-    "Gravity",
-    "Latch",
-    "Load",
-    "LoadElement",
-    "Mass",
-    "Motor",
-    "PairDamper",
-    "PairLoad",
-    "PairSpring",
-    "Pressure",
-    "Pretension",
-    "Release",
-    "Spring",
-    "Stop",
-    "Torque",
-    "damper",
-    "effort",
-    "force",
-    "friction",
-    "gravity",
-    "latch",
-    "mass",
-    "motor",
-    "pressure",
-    "pretension",
-    "release",
-    "spring",
-    "stop",
-    "torque",
-]
-# Every kind of load.
-KINDS: tuple[type[Load], ...] = (
-    Force,
-    Torque,
-    Effort,
-    Spring,
-    PairSpring,
-    Damper,
-    PairDamper,
-    Motor,
-    Pressure,
-    Stop,
-    Latch,
-    Release,
+# What each table of a mechanism file holds, in the order in which they are written.
+WRITTEN = LateKinds[type[ListedLoad]](
+    __name__,
+    {
+        "masses": "mass.Mass",
+        "forces": "force.Force",
+        "torques": "force.Torque",
+        "efforts": "attachments.Effort",
+        "springs": "spring.Spring",
+        "dampers": "damper.Damper",
+        "motors": "motor.Motor",
+        "pressures": "pressure.Pressure",
+        "stops": "stop.Stop",
+        "latches": "latch.Latch",
+        "releases": "latch.Release",
+        "frictions": "friction.Friction",
+        "pretensions": "pretension.Pretension",
+    },
 )
-# What each table of a mechanism file may hold.
-_TABLED: tuple[type[Any], ...] = (Mass, *KINDS, Friction, Pretension)
-WRITTEN: dict[str, tuple[type[Any], ...]] = {
-    kind.table: tuple(other for other in _TABLED if other.table == kind.table) for kind in _TABLED
-}
-# What is written of masses and forces.
-LoadElement: TypeAlias = Mass | Gravity | Load | Friction | Pretension
+# What some of them hold where a pair is named instead of points.
+ALONG_PAIRS = LateKinds[type[ListedLoad]](__name__, {"springs": "spring.PairSpring", "dampers": "damper.PairDamper"})
+
+__all__ = ["ALONG_PAIRS", "WRITTEN", "ListedLoad", "Load", "LoadElement"]

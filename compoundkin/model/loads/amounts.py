@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite, nan
@@ -22,10 +22,8 @@ from compoundkin.model.attributes import TIME
 from compoundkin.model.fields import Key
 from compoundkin.model.geometry import real, vector
 from compoundkin.model.laws.constant_laws import ComparedByValue
-from compoundkin.model.loads.contract import LoadedPoses
+from compoundkin.model.loads.contract import RATE, LoadedPoses
 
-# What tables of loads that know a rate of their own are over: that of an effort's coordinate, of a torque's link.
-RATE = "rate"
 # The variables of an amount by name, each evaluated only where it is needed.
 Variables: TypeAlias = Mapping[str, Callable[[], Number]]
 
@@ -384,13 +382,6 @@ def needs_rates(amount: Any) -> bool:
     if isinstance(amount, LoadTable):
         return amount.over == RATE
     return isinstance(amount, LoadFunction) and RATE in amount.takes
-
-
-def tables_of(amount: Any) -> Iterator[LoadTable]:
-    """Yield the tables that an amount holds."""
-    for part in amount if isinstance(amount, tuple) else (amount,):
-        if isinstance(part, LoadTable):
-            yield part
 
 
 def corners(amount: LoadTable, low: float, high: float, most: int) -> list[float]:

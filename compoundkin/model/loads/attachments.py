@@ -11,18 +11,16 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, dot
-from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidMechanism, LikelySlip, Problem, suggestion, warn
 from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
-from compoundkin.model.fields import DeclaredKeys, link_key, spot_key, value_key
+from compoundkin.model.fields import link_key, spot_key, value_key
 from compoundkin.model.geometry import FRAME, vector
 from compoundkin.model.loads.amounts import Amount, as_amount, needs_rates, plain_amount, value_of
-from compoundkin.model.loads.contract import NO_RENAMING, Load, LoadedPoses, NamedParts
+from compoundkin.model.loads.contract import COORDINATE, NO_RENAMING, ListedLoad, Load, LoadedPoses, NamedParts
 from compoundkin.model.pairs.revolute import SEPARATORS
 
 # The variables of functions of a load along a pair.
-COORDINATE = "coordinate"
 VARIABLES = (COORDINATE, "rate", "time")
 FORWARD, BACK = "forward", "back"
 # An effort as a function of a coordinate, its rate and the time.
@@ -291,16 +289,19 @@ def check_ends(where: str, pair: str, link: str, beside: Mapping[str, Any]) -> N
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PairProperty(ShortRepr):
+class PairProperty(ListedLoad):
     """A property of a pair beside its dimensions, under the pair's name."""
 
     pair: str
 
-    keys = DeclaredKeys()
-
     @property
     def name(self) -> str:
         """The name of its pair."""
+        return self.pair
+
+    @property
+    def property_of(self) -> str:
+        """Its pair."""
         return self.pair
 
     def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_RENAMING) -> Self:

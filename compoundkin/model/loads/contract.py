@@ -15,10 +15,22 @@ from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.attributes import TIME
-from compoundkin.model.fields import DeclaredKeys, NameWording, implied_points, link_fields, name_problems, value_key
+from compoundkin.model.fields import (
+    DeclaredKeys,
+    Item,
+    NameWording,
+    implied_points,
+    link_fields,
+    name_problems,
+    value_key,
+)
 from compoundkin.model.pairs.contract import Pair
 from compoundkin.model.units import Units
 
+# The variable of loads along a pair.
+COORDINATE = "coordinate"
+# What tables of loads that know a rate of their own are over: that of an effort's coordinate, of a torque's link.
+RATE = "rate"
 NO_RENAMING: Mapping[str, str] = MappingProxyType({})
 
 
@@ -82,8 +94,44 @@ def with_names(amount: Any, coordinates: Mapping[str, str]) -> Any:
     return replace(amount, over=coordinates[over]) if over in coordinates else amount
 
 
+class LoadElement(ShortRepr, Item):
+    """What is written of masses and forces, gravity among them."""
+
+    __slots__ = ()
+
+
+class ListedLoad(LoadElement, ABC):
+    """A mass, a load or a property of a pair that forces need: one of a table of such in a mechanism file."""
+
+    __slots__ = ()
+
+    title: ClassVar[str]  # "spring"
+    table: ClassVar[str]  # its table in a mechanism file
+    keys = DeclaredKeys()  # the keys of its table in a mechanism file, by its fields
+    amounts: ClassVar[tuple[str, ...]] = ()  # the fields that hold amounts
+    is_steady: ClassVar[bool] = False  # whether its numbers cannot change along a motion
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """Its name: one of its own, or that of its link or pair."""
+
+    @property
+    def property_of(self) -> str:
+        """The pair of which it is a property, and which has one such; empty for what has a name of its own."""
+        return ""
+
+    @abstractmethod
+    def problems(self, written: NamedParts, where: str) -> Iterator[Problem]:
+        """Find problems of its definition."""
+
+    @abstractmethod
+    def renamed(self, links: Mapping[str, str], coordinates: Mapping[str, str] = NO_RENAMING) -> Self:
+        """Return it with other names of links and coordinates. Its own name stays."""
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Load(ShortRepr, ABC):
+class Load(ListedLoad):
     """A load on links: a force, torque, effort, spring or damper. Kinds are frozen dataclasses."""
 
     name: str = field(
@@ -92,11 +140,7 @@ class Load(ShortRepr, ABC):
         metadata=value_key("name", "What the load is called in reports; its kind and what it acts on if left out."),
     )
 
-    title: ClassVar[str]  # "spring"
-    table: ClassVar[str]  # its table in a mechanism file
     wording: ClassVar[NameWording] = NameWording(verb="act")
-    keys = DeclaredKeys()  # the keys of its table in a mechanism file, by its fields
-    amounts: ClassVar[tuple[str, ...]] = ()  # the fields that hold amounts
     own_variable: ClassVar[str] = TIME  # the default variable of their tables
     has_rate: ClassVar[bool] = False  # whether their tables may be over a rate of its own
 
@@ -166,6 +210,10 @@ class Load(ShortRepr, ABC):
     def variables(self, at: LoadedPoses) -> Mapping[str, Callable[[], Number]]:
         """Return the variables of its amounts but the time, by their names; tables are over the first."""
         return {}
+
+    def rotor(self) -> tuple[str, Number] | None:
+        """Return the link that its rotor moves with, and the inertia that the link feels; None without an inertia."""
+        return None
 
     def speed_at(self, at: LoadedPoses) -> Number | None:
         """Return the speed on which it may depend, None where it depends on none."""

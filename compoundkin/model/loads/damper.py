@@ -15,7 +15,6 @@ from compoundkin.model.fields import NameWording, value_key
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.amounts import Amount, as_amount, plain_amount, value_of
 from compoundkin.model.loads.attachments import (
-    COORDINATE,
     EndSeparation,
     PairLoad,
     PlainEffort,
@@ -23,7 +22,7 @@ from compoundkin.model.loads.attachments import (
     attachment_point,
     check_ends,
 )
-from compoundkin.model.loads.contract import Load, LoadedPoses, NamedParts
+from compoundkin.model.loads.contract import COORDINATE, Load, LoadedPoses, NamedParts
 from compoundkin.model.loads.spring import is_force_law
 
 _RATE = "Force or torque for a unit of speed, or the force itself as a table over that."

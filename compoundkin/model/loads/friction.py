@@ -38,6 +38,7 @@ class Friction(PairProperty):
 
     title: ClassVar[str] = "friction"
     table: ClassVar[str] = "frictions"
+    is_steady: ClassVar[bool] = True
 
     @property
     def factor(self) -> Number:

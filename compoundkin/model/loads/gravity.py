@@ -9,9 +9,9 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
-from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidMechanism, LikelySlip, Problem, suggestion, warn
 from compoundkin.model.geometry import vector
+from compoundkin.model.loads.contract import LoadElement
 from compoundkin.model.units import LENGTHS
 
 METRES = "m/s^2"
@@ -22,7 +22,7 @@ MOST = 30.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Gravity(ShortRepr):
+class Gravity(LoadElement):
     """The acceleration of free fall, m/s^2 whatever the unit of length."""
 
     vector: Number

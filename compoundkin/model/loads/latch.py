@@ -14,8 +14,8 @@ from compoundkin.base.errors import Problem, suggestion
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.fields import value_key
 from compoundkin.model.geometry import real
-from compoundkin.model.loads.attachments import COORDINATE, PairLoad
-from compoundkin.model.loads.contract import NO_RENAMING, Load, LoadedPoses, NamedParts
+from compoundkin.model.loads.attachments import PairLoad
+from compoundkin.model.loads.contract import COORDINATE, NO_RENAMING, Load, LoadedPoses, NamedParts
 from compoundkin.model.pairs.profile_contact import as_profile_contact
 
 

@@ -10,15 +10,14 @@ import numpy as np
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, cross, dot
-from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import Problem
-from compoundkin.model.fields import DeclaredKeys, NameWording, link_key, name_problems, spot_key, value_key
+from compoundkin.model.fields import NameWording, link_key, name_problems, spot_key, value_key
 from compoundkin.model.geometry import FRAME, real, vector
-from compoundkin.model.loads.contract import NO_RENAMING, NamedParts
+from compoundkin.model.loads.contract import NO_RENAMING, ListedLoad, NamedParts
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Mass(ShortRepr):
+class Mass(ListedLoad):
     """The mass of a link, its mass centre `at`, its inertia about that.
 
     The mass centre is a letter, or a place in the link's frame. What is left out is that of a uniform bar or plate
@@ -43,7 +42,7 @@ class Mass(ShortRepr):
 
     title: ClassVar[str] = "mass"
     table: ClassVar[str] = "masses"
-    keys = DeclaredKeys()
+    is_steady: ClassVar[bool] = True
 
     @property
     def name(self) -> str:

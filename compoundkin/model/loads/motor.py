@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
@@ -15,8 +15,8 @@ from compoundkin.base.errors import Problem
 from compoundkin.model.fields import value_key
 from compoundkin.model.geometry import real
 from compoundkin.model.loads.amounts import Amount, as_amount, plain_amount, value_of
-from compoundkin.model.loads.attachments import COORDINATE, PairLoad, PlainEffort, rate_of
-from compoundkin.model.loads.contract import Load, LoadedPoses, NamedParts
+from compoundkin.model.loads.attachments import PairLoad, PlainEffort, rate_of
+from compoundkin.model.loads.contract import COORDINATE, Load, LoadedPoses, NamedParts
 
 # What says which motor it is, with what belongs to it.
 SORTS = {
@@ -176,8 +176,10 @@ class Motor(PairLoad):
     def _is_on_frame(pair: Any) -> bool:
         return bool(pair.free_is_angle and pair.is_simple and "frame" in pair.members)
 
-    def rotor(self) -> tuple[str, Number]:
+    def rotor(self) -> tuple[str, Number] | None:
         """Return the link that its rotor moves with, and the inertia that the link feels; none without its links."""
+        if not np.any(np.asarray(self.inertia) > 0.0):
+            return None
         moved = [link for link in self.members if link != "frame"]
         return (moved[0] if moved else ""), np.square(self.gear) * self.inertia
 
@@ -299,14 +301,6 @@ class Motor(PairLoad):
         if not self.loses_at_rotor:
             return gear * torque * factor, 0.0
         return gear * (passed * factor + inertia * second), gear * inertia * (1.0 - factor)
-
-
-def rotors(loads: Iterable[Load]) -> Iterator[tuple[str, Number]]:
-    """Yield the links that rotors of motors move with, and the inertias that these feel."""
-    for load in loads:
-        motor = as_motor(load)
-        if motor is not None and np.any(np.asarray(motor.inertia) > 0.0):
-            yield motor.rotor()
 
 
 def as_motor(load: Load) -> Motor | None:

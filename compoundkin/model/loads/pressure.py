@@ -14,8 +14,8 @@ from compoundkin.base.errors import Problem
 from compoundkin.model.fields import value_key
 from compoundkin.model.geometry import real
 from compoundkin.model.loads.amounts import Amount, as_amount, needs_rates, value_of
-from compoundkin.model.loads.attachments import COORDINATE, VARIABLES, PairLoad
-from compoundkin.model.loads.contract import LoadedPoses, NamedParts
+from compoundkin.model.loads.attachments import VARIABLES, PairLoad
+from compoundkin.model.loads.contract import COORDINATE, LoadedPoses, NamedParts
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -15,7 +15,6 @@ from compoundkin.model.fields import NameWording, value_key
 from compoundkin.model.geometry import FRAME, real
 from compoundkin.model.loads.amounts import Amount, LoadFunction, LoadTable, as_amount, needs_rates, value_of
 from compoundkin.model.loads.attachments import (
-    COORDINATE,
     VARIABLES,
     EndSeparation,
     PairLoad,
@@ -23,7 +22,7 @@ from compoundkin.model.loads.attachments import (
     attachment_point,
     check_ends,
 )
-from compoundkin.model.loads.contract import Load, LoadedPoses, NamedParts
+from compoundkin.model.loads.contract import COORDINATE, Load, LoadedPoses, NamedParts
 
 TENSION, COMPRESSION = "tension", "compression"
 _STIFFNESS = "Force or torque for a unit of extension, or the force itself as a table over that."

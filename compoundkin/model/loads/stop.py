@@ -14,8 +14,8 @@ from compoundkin.base.errors import Problem
 from compoundkin.base.series import Series
 from compoundkin.model.fields import value_key
 from compoundkin.model.geometry import real
-from compoundkin.model.loads.attachments import COORDINATE, PairLoad, rate_of
-from compoundkin.model.loads.contract import Load, LoadedPoses, NamedParts
+from compoundkin.model.loads.attachments import PairLoad, rate_of
+from compoundkin.model.loads.contract import COORDINATE, Load, LoadedPoses, NamedParts
 
 # The sides of a stop: the coordinate is not below `low`, and not above `high`.
 LOW, HIGH = 1.0, -1.0

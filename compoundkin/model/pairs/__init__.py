@@ -1,28 +1,35 @@
-"""The kinds of kinematic pair: one file each, and this registry."""
+"""The kinds of kinematic pair: one file each, and this registry.
+
+A kind and the word that writes it are imported from its file, `pairs.slot`. The registry knows kinds by name and
+imports their files when they are first asked for: most mechanisms have one kind or two.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from compoundkin.model.pairs.arc import ArcSlot, arc
-from compoundkin.model.pairs.belt import Belt, belt
-from compoundkin.model.pairs.cam import Cam, cam
+from compoundkin.model.fields import LateKinds
 from compoundkin.model.pairs.contract import Pair
-from compoundkin.model.pairs.face import Face, face
-from compoundkin.model.pairs.gear import Gear, gear
-from compoundkin.model.pairs.prismatic import Prismatic, slide
-from compoundkin.model.pairs.rack import Rack, rack
 from compoundkin.model.pairs.revolute import Revolute
-from compoundkin.model.pairs.rolling import Rolling, RollingOnCircle, roll, roll_around
-from compoundkin.model.pairs.slot import Slot, slot
 
+# Each kind's letter in the names of groups, its table in files (pins follow from shared letters), its file and class.
 # In the order in which the letters of a group are written: RRP, not PRR.
-KINDS: tuple[type[Pair], ...] = (
-    *(Revolute, Prismatic, Slot, ArcSlot, Cam, Face),
-    *(Gear, Belt, Rack, Rolling, RollingOnCircle),
+_KINDS = (
+    ("R", "", "revolute.Revolute"),
+    ("P", "slides", "prismatic.Prismatic"),
+    ("S", "slots", "slot.Slot"),
+    ("A", "arcs", "arc.ArcSlot"),
+    ("C", "cams", "cam.Cam"),
+    ("F", "faces", "face.Face"),
+    ("G", "gears", "gear.Gear"),
+    ("B", "belts", "belt.Belt"),
+    ("K", "racks", "rack.Rack"),
+    ("L", "rollings", "rolling.Rolling"),
+    ("O", "circular_rollings", "rolling.RollingOnCircle"),
 )
-# The kinds that a mechanism writes out, by their table in a file; pins follow from shared letters.
-WRITTEN: dict[str, type[Pair]] = {kind.table: kind for kind in KINDS if kind.table}
+KINDS = LateKinds[type[Pair]](__name__, {code: place for code, _, place in _KINDS})
+# The kinds that a mechanism writes out, by their tables.
+WRITTEN = LateKinds[type[Pair]](__name__, {table: place for _, table, place in _KINDS if table})
 
 
 def pairs_among(items: Iterable[object]) -> tuple[Pair, ...]:
@@ -30,30 +37,4 @@ def pairs_among(items: Iterable[object]) -> tuple[Pair, ...]:
     return tuple(item for item in items if isinstance(item, Pair))
 
 
-__all__ = [
-    "KINDS",
-    "WRITTEN",
-    "ArcSlot",
-    "Belt",
-    "Cam",
-    "Face",
-    "Gear",
-    "Pair",
-    "Prismatic",
-    "Rack",
-    "Revolute",
-    "Rolling",
-    "RollingOnCircle",
-    "Slot",
-    "arc",
-    "belt",
-    "cam",
-    "face",
-    "gear",
-    "pairs_among",
-    "rack",
-    "roll",
-    "roll_around",
-    "slide",
-    "slot",
-]
+__all__ = ["KINDS", "WRITTEN", "Pair", "Revolute", "pairs_among"]

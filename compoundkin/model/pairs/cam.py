@@ -28,7 +28,7 @@ from compoundkin.model.pairs.profile_contact import (
     relative_path,
 )
 from compoundkin.model.pairs.symbols import Groove, Mark, Outline, Stud, Wheel
-from compoundkin.model.profiles import Profile, side_of
+from compoundkin.model.profiles import Profile
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +74,7 @@ class Cam(ProfileContact, Guided, FrictionContact):
     @property
     def outward(self) -> float:
         """The side of the roller: +1 on that of the curve's normal, else -1."""
-        return -side_of(self.curve) if self.inside else side_of(self.curve)
+        return -self.curve.outer_side if self.inside else self.curve.outer_side
 
     @property
     def roller(self) -> float:

@@ -6,14 +6,16 @@ Pins, slides, pins in slots and cams have friction. Rolling wheels, gears and be
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import ClassVar, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from compoundkin.base.arrays import Number, complex_of, dot
-from compoundkin.base.curves import Curve
 from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.attributes import NORMAL
 from compoundkin.model.pairs.contract import Ends, Line, Pair, Poses, Replaceable, RollingContact, jacobian_of_rows
+
+if TYPE_CHECKING:
+    from compoundkin.base.curves import Curve
 
 
 class Touch(NamedTuple):

@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -19,10 +19,20 @@ from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import Series
 from compoundkin.base.wrenches import Wrench
 from compoundkin.model.attributes import NORMAL, TANGENTIAL
-from compoundkin.model.fields import DeclaredKeys, NameWording, implied_points, link_fields, name_problems, value_key
+from compoundkin.model.fields import (
+    DeclaredKeys,
+    Item,
+    NameWording,
+    implied_points,
+    link_fields,
+    name_problems,
+    value_key,
+)
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.pairs.loop_terms import LoopTerms
 from compoundkin.model.pairs.symbols import Mark
+
+if TYPE_CHECKING:
+    from compoundkin.model.pairs.loop_terms import LoopTerms
 
 
 class Point(NamedTuple):
@@ -79,7 +89,7 @@ Poses: TypeAlias = tuple[Pose, ...]
 
 
 @dataclass(frozen=True, eq=False)
-class Pair(ABC):
+class Pair(Item, ABC):
     """A kinematic pair between two links, or two and their carrier. Kinds are frozen dataclasses, one file each."""
 
     name: str = field(
@@ -98,6 +108,7 @@ class Pair(ABC):
         tuple[str, ...]
     ] = ()  # which of "effort", "friction", "efficiency", "pretension" may be written of it
     is_simple: ClassVar[bool] = False  # whether its coordinate only turns a member about a point, or only shifts it
+    is_geared: ClassVar[bool] = False  # whether its closure is linear in its members' angles
     force_words: ClassVar[tuple[str, ...]] = ()  # what components of its force along its unit wrenches are called
     table: ClassVar[str] = ""  # its table in a mechanism file; "" for pairs that are not written out
     wording: ClassVar[NameWording] = NameWording()  # how it says what is wrong with its names
@@ -178,6 +189,11 @@ class Pair(ABC):
             Wrench.at(origin, complex_of(rows[..., k, 3], rows[..., k, 4]), rows[..., k, 5])
             for k in range(self.held + 1)
         )
+
+    @property
+    def extent(self) -> float:
+        """The size of its profile; zero for a pair without one."""
+        return 0.0
 
     @property
     def acts_at(self) -> str:

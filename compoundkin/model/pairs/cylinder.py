@@ -12,6 +12,7 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.errors import Problem
 from compoundkin.model.fields import (
     DeclaredKeys,
+    Item,
     NameWording,
     constructor,
     link_key,
@@ -46,7 +47,7 @@ class Stroke(Prismatic):
 
 
 @dataclass(frozen=True, eq=False)
-class Cylinder:
+class Cylinder(Item):
     """A hydraulic cylinder, a gas spring, a linear actuator.
 
     Its rod is pinned to the point `point` of `link`, its barrel to the point `at` of the link `to`. It is driven by its

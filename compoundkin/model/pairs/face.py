@@ -39,7 +39,7 @@ from compoundkin.model.pairs.profile_contact import (
 )
 from compoundkin.model.pairs.revolute import Revolute
 from compoundkin.model.pairs.symbols import Mark, Outline, Track, known_range
-from compoundkin.model.profiles import Profile, side_of
+from compoundkin.model.profiles import Profile
 
 # A sample is one that a face can touch if the face with its normal touches within this part of the size.
 NEAR = 1e-6
@@ -196,7 +196,7 @@ class Face(ProfileContact, FrictionContact):
         """Points of the profile and its outward normals, those that a face can touch."""
         s = self.curve.samples.s[::THINNED]
         place, first = self.curve.derivatives(s, 1)
-        normal = -1j * side_of(self.curve) * first / np.abs(first)
+        normal = -1j * self.curve.outer_side * first / np.abs(first)
         touched = self.curve.at(self.curve.support(normal)).c[0]
         on_hull = np.abs(touched - place) < NEAR * self.curve.size
         return place[on_hull], normal[on_hull]

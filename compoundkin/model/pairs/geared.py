@@ -72,6 +72,7 @@ class Geared(TurnCounting, Replaceable):
     held_angles: ClassVar[tuple[int, ...]] = (0,)
     free: ClassVar[tuple[str, ...]] = ("angle",)
     free_is_angle: ClassVar[bool] = True
+    is_geared: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         """Two sizes are numbers or arrays."""
@@ -241,11 +242,6 @@ class Geared(TurnCounting, Replaceable):
         """Return the distance of the axes, the same at all poses."""
         first, second = axes_of(ends, poses)
         return known_range(abs(second - first))[0]
-
-
-def as_geared(pair: Pair) -> Geared | None:
-    """Return a pair as a geared one, whose closure is linear in its members' angles, or None."""
-    return pair if isinstance(pair, Geared) else None
 
 
 class ToothFriction(CoupleFriction):

@@ -5,18 +5,19 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import ClassVar, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 
 from compoundkin.base.arrays import Number, dot
-from compoundkin.base.curves import Curve
-from compoundkin.base.curves.samples import spans
 from compoundkin.base.errors import Problem
 from compoundkin.base.poses import Pose
 from compoundkin.model.pairs.contact import Contact
 from compoundkin.model.pairs.contract import Ends, Pair, Poses
-from compoundkin.model.profiles import Profile, side_of
+
+if TYPE_CHECKING:
+    from compoundkin.base.curves import Curve
+    from compoundkin.model.profiles import Profile
 
 # One of so many samples of the profile is enough to find where it is crossed or touched; Newton does the rest.
 THINNED = 4
@@ -40,6 +41,8 @@ class ProfileContact(Contact):
 
     def problems(self, links: Mapping[str, tuple[str, ...]], where: str) -> Iterator[Problem]:
         """Find unknown links and points, and an invalid profile."""
+        from compoundkin.model.profiles import Profile
+
         yield from super().problems(links, where)
         if not isinstance(self.profile, Profile):
             what = f"{self.profile!r} is not a profile"
@@ -56,7 +59,7 @@ class ProfileContact(Contact):
     @property
     def outward(self) -> float:
         """The side of the follower: +1 on that of the curve's normal, else -1."""
-        return side_of(self.curve)
+        return self.curve.outer_side
 
     @property
     def coordinate_scale(self) -> float:
@@ -94,7 +97,7 @@ class ProfileContact(Contact):
         """The parameter's spans where hollows are narrower than the roller or flat face."""
         curve = self.curve
         if self.is_flat:
-            return spans(curve.samples, curve.low, curve.high, lambda s: CUTS + self._bend(s))
+            return curve.spans(lambda s: CUTS + self._bend(s))
         return curve.undercut(self.outward * self.roller) if self.roller else ()
 
     @cached_property
@@ -102,8 +105,8 @@ class ProfileContact(Contact):
         """The spans of the parameter that are not touched. The follower touches before and behind them."""
         curve = self.curve
         if self.is_flat:
-            return spans(curve.samples, curve.low, curve.high, self._above_face)
-        return spans(curve.samples, curve.low, curve.high, self._beside_roller) if self.roller else ()
+            return curve.spans(self._above_face)
+        return curve.spans(self._beside_roller) if self.roller else ()
 
     @abstractmethod
     def approach(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> Approach:
@@ -133,7 +136,7 @@ class ProfileContact(Contact):
     @property
     def turns(self) -> float:
         """+1 for a closed profile that goes counterclockwise, -1 for a clockwise one, 0 for an open one."""
-        return side_of(self.curve) if self.curve.closed else 0.0
+        return self.curve.outer_side if self.curve.closed else 0.0
 
     def _bend(self, s: Number) -> Number:
         """The curvature by the profile's size, negative in a hollow."""

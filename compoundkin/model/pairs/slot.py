@@ -185,7 +185,7 @@ class TurningBlock(Slot):
 def releases(pair: Pair) -> Iterator[ReleasedPair]:
     """Yield the possible releases of a pair's held coordinates, the smallest first.
 
-    >>> from compoundkin.model.pairs import slide
+    >>> from compoundkin.model.pairs.prismatic import slide
     >>> [(way.coordinates, way.freed) for way in releases(slide("w", on="v", at="A", through="B"))]
     [((1,), 'in turning'), ((0, 1), 'as a whole')]
     """

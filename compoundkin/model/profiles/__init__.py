@@ -12,7 +12,6 @@ from compoundkin.model.profiles.profile import (
     disc,
     formula,
     profile,
-    side_of,
 )
 from compoundkin.model.profiles.synthesised import Synthesised, synthesise
 
@@ -21,5 +20,5 @@ KINDS: tuple[type[Profile], ...] = (DiscProfile, PointsProfile, FormulaProfile, 
 WRITTEN: dict[str, type[Profile]] = {kind.kind: kind for kind in KINDS if kind.keys}
 __all__ = [
     "KINDS", "WRITTEN", "DiscProfile", "DoubleCam", "FormulaProfile", "PointsProfile", "Profile", "Synthesised",
-    "conjugate", "constant_breadth", "disc", "formula", "profile", "side_of", "synthesise",
+    "conjugate", "constant_breadth", "disc", "formula", "profile", "synthesise",
 ]  # fmt: skip

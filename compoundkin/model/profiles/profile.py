@@ -65,11 +65,6 @@ class Profile(CopiesFields, ABC):
         return "change the points that make the loop"
 
 
-def side_of(curve: Curve) -> float:
-    """Return +1 where the normal of a closed curve points outward, -1 inward; +1 for an open curve."""
-    return 1.0 if not curve.closed or curve.is_counterclockwise else -1.0
-
-
 @dataclass(frozen=True)
 class DiscProfile(Profile):
     """A round disc, an eccentric if its `middle` is not its link's axis."""

@@ -181,7 +181,7 @@ def with_stated_offsets(mechanism: Mechanism, names: Sequence[str]) -> Mechanism
     """Return the mechanism with the named offsets stated; one neither written nor read off the drawing is 0.
 
     >>> from compoundkin.model.elements import drive, link
-    >>> from compoundkin.model.pairs import slide
+    >>> from compoundkin.model.pairs.prismatic import slide
     >>> way = slide("block", on="frame", through="O", at="B", name="way")
     >>> press = Mechanism("m", link("frame", O=0), link("block", B=0), way, drive("block"))
     >>> with_stated_offsets(press, ["way.offset"]).written_pairs[0].offset

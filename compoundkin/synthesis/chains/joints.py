@@ -17,7 +17,11 @@ from compoundkin.model.pairs import KINDS
 from compoundkin.structure.cycles import find
 from compoundkin.synthesis.chains.coloured_graphs import Canonical, Coloured, canonical
 
-REVOLUTE, SLIDE = (next(k.code for k in KINDS if k.is_simple and k.free_is_angle is turns) for turns in (True, False))
+# The two simple pairs: one turns, one shifts.
+REVOLUTE, SLIDE = (
+    next(code for code, kind in KINDS.items() if kind.is_simple and kind.free_is_angle is turns)
+    for turns in (True, False)
+)
 LOWER_HOLDS = 2
 
 

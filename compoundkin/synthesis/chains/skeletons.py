@@ -18,7 +18,8 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, wrapped
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName
-from compoundkin.model.elements import Drive, Item, drawn, drive, link
+from compoundkin.model.elements import Drive, drawn, drive, link
+from compoundkin.model.fields import Item
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.structure.decomposition import decomposed

@@ -409,7 +409,8 @@ def bearing_loads(
     engine bearings, e.g. C. F. Taylor, The Internal-Combustion Engine in Theory and Practice.
 
     >>> from compoundkin.model.elements import drive, link
-    >>> from compoundkin.model.loads import gravity, mass
+    >>> from compoundkin.model.loads.gravity import gravity
+    >>> from compoundkin.model.loads.mass import mass
     >>> from compoundkin.model.mechanism import Mechanism
     >>> from compoundkin.kinematics import solve
     >>> items = link("frame", A=0), link("crank", A=0, B=2), drive("crank"), mass("crank", 1.0, at="B")

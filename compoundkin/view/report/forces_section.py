@@ -93,7 +93,7 @@ def sheet(forces: Forces, at: Any = None, *, pose: int | None = None, design: in
     >>> from compoundkin.dynamics.force_analysis import force_analysis
     >>> from compoundkin.kinematics import solve
     >>> from compoundkin.model.elements import drive, link
-    >>> from compoundkin.model.loads import force
+    >>> from compoundkin.model.loads.force import force
     >>> from compoundkin.model.mechanism import Mechanism
     >>> parts = link("frame", A=0), link("arm", A=0, B=2), drive("arm"), force("arm", (0, -30), at="B", name="F")
     >>> arm = Mechanism("Arm", *parts, units={"length": "m", "mass": "kg", "force": "N"})

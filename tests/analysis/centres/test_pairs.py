@@ -17,7 +17,7 @@ from tests.support import random_pose, sample
 POSES = 50
 
 
-@pytest.mark.parametrize("kind", KINDS, ids=[kind.code for kind in KINDS])
+@pytest.mark.parametrize("kind", KINDS.values(), ids=[kind.code for kind in KINDS.values()])
 def test_the_pair_allows_the_motion_about_its_centre(kind: type[Pair]) -> None:
     """A twist of the second member about the centre breaks nothing; a point has the free coordinate's rate."""
     rng = np.random.default_rng(3)

@@ -20,7 +20,6 @@ from compoundkin.kinematics.groups.group_equations import GroupEquations, Member
 from compoundkin.model.pairs import KINDS, Pair
 from tests.support import largest, random_planar, random_pose, random_unit, sample
 
-BY_CODE = {kind.code: kind for kind in KINDS}
 ORDER = 3
 MANY = 200
 SEEDS = st.integers(0, 2**32 - 1)
@@ -59,7 +58,7 @@ def random_end(rng: np.random.Generator, pair: Pair, order: int, shape: tuple[in
 
 def loose(kind: type[DyadSolver], rng: np.random.Generator, order: int, shape: tuple[int, ...]) -> Case:
     """Sides with nothing in common: it may or may not close."""
-    pairs = tuple(sample(BY_CODE[code], str(k)) for k, code in enumerate(kind.name))
+    pairs = tuple(sample(KINDS[code], str(k)) for k, code in enumerate(kind.name))
     outer = [OuterPair(random_end(rng, p, order, shape), random_end(rng, p, order, shape)) for p in pairs[::2]]
     inner = (random_end(rng, pairs[1], order, shape), random_end(rng, pairs[1], order, shape))
     return Case(pairs, outer[0], inner, outer[1])  # type: ignore[arg-type]
@@ -346,7 +345,7 @@ def pin(point: complex | np.ndarray) -> End:
 
 
 def rrr(first: float, second: float, apart: complex | np.ndarray) -> Case:
-    pairs = tuple(sample(BY_CODE["R"], str(k)) for k in range(3))
+    pairs = tuple(sample(KINDS["R"], str(k)) for k in range(3))
     return Case(
         pairs,
         OuterPair(pin(0j), pin(0j)),
@@ -357,13 +356,13 @@ def rrr(first: float, second: float, apart: complex | np.ndarray) -> Case:
 
 def rrp(rod: float, height: complex) -> Case:
     """A rod about the origin, its other pin on a block of a guide along x at some height."""
-    pairs = (sample(BY_CODE["R"], "0"), sample(BY_CODE["R"], "1"), sample(BY_CODE["P"], "2"))
+    pairs = (sample(KINDS["R"], "0"), sample(KINDS["R"], "1"), sample(KINDS["P"], "2"))
     guide = End(1j * height, 1 + 0j)
     return Case(pairs, OuterPair(pin(0j), pin(0j)), (pin(rod + 0j), pin(0j)), OuterPair(guide, End(0j, 1 + 0j)))
 
 
 def rpr(across: float, apart: complex) -> Case:
-    pairs = (sample(BY_CODE["R"], "0"), sample(BY_CODE["P"], "1"), sample(BY_CODE["R"], "2"))
+    pairs = (sample(KINDS["R"], "0"), sample(KINDS["P"], "1"), sample(KINDS["R"], "2"))
     return Case(
         pairs,
         OuterPair(pin(0j), pin(0j)),

@@ -17,7 +17,8 @@ from compoundkin.files import load
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import DYADS, DyadSolver
 from compoundkin.kinematics.groups.force_transmission import reactions_of
-from compoundkin.model.pairs import Pair, Prismatic, Revolute
+from compoundkin.model.pairs import Pair, Revolute
+from compoundkin.model.pairs.prismatic import Prismatic
 from compoundkin.structure.assur_groups import named_group
 from compoundkin.structure.mobility_count import Body
 from tests.kinematics.groups.test_contract import SEEDS, Case, closable, conditioned

@@ -88,9 +88,8 @@ def register(kind: type[Pair], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(assur_groups._RANK, kind.code, assur_groups._RANK.get(kind.code, len(assur_groups._RANK)))
     if kind.table:
         monkeypatch.setitem(WRITTEN, kind.table, kind)
-        form = document.TableForm(kind.table, "array", kind.keys, f"Each is a {kind.title}.")
-        others = tuple(own for own in document.TABLES if own.name != kind.table)
-        monkeypatch.setattr(document, "TABLES", (others[0], form, *others[1:]))
+        first, *others = (name for name in document.TABLES if name != kind.table)
+        monkeypatch.setattr(document, "TABLES", (first, kind.table, *others))
 
 
 def with_level() -> ck.Mechanism:

@@ -15,7 +15,7 @@ import compoundkin as ck
 from compoundkin.cli import cli
 from compoundkin.files.json_schema import schema
 from compoundkin.files.mechanism_files import dumps, loads
-from compoundkin.model.elements import Item
+from compoundkin.model.fields import Item
 from compoundkin.view.sketch.shapes import Polygon, leaves
 
 pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")

@@ -13,7 +13,8 @@ import compoundkin as ck
 from compoundkin.files import document as doc
 from compoundkin.files.json_schema import schema
 from compoundkin.files.mechanism_files import dumps, loads
-from compoundkin.model.elements import Drawn, Item
+from compoundkin.model.elements import Drawn
+from compoundkin.model.fields import Item
 from compoundkin.view.sketch.shapes import Polyline, leaves
 
 pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
@@ -255,7 +256,7 @@ def test_the_schema_knows_ends() -> None:
     checker = jsonschema.Draft202012Validator(schema())
     for mechanism in (slider_crank(reach=(None, 3.8)), slider_crank(reach=("A", 3.8)), four_bar_on_arc(("E", 2.0))):
         assert not list(checker.iter_errors(tomllib.loads(dumps(mechanism))))
-    assert {key.name for key in doc.TABLES[1].keys if key.kind == "reach"} == {"reach"}
+    assert {key.name for key in doc.table_forms()[1].keys if key.kind == "reach"} == {"reach"}
 
 
 WRONG = [

@@ -13,13 +13,18 @@ from scipy.linalg import null_space
 import compoundkin as ck
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.base.wrenches import Wrench
-from compoundkin.model.pairs import KINDS, Belt, Cam, Gear, Pair, Rack, RollingOnCircle
+from compoundkin.model.pairs import KINDS, Pair
+from compoundkin.model.pairs.belt import Belt
+from compoundkin.model.pairs.cam import Cam
 from compoundkin.model.pairs.contract import Ends, as_transmitting_pair, as_turn_counting
+from compoundkin.model.pairs.gear import Gear
+from compoundkin.model.pairs.rack import Rack
+from compoundkin.model.pairs.rolling import RollingOnCircle
 from tests.support import ends_at, random_pose, sample
 
 SEEDS = st.integers(0, 2**32 - 1)
-PIN = sample(KINDS[0])
-every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.code for kind in KINDS])
+PIN = sample(KINDS["R"])
+every_kind = pytest.mark.parametrize("kind", KINDS.values(), ids=[kind.code for kind in KINDS.values()])
 
 
 def closed(kind: type[Pair], rng: np.random.Generator, **words: Any) -> tuple[Pair, Ends, tuple[Pose, ...]]:
@@ -79,7 +84,9 @@ def test_no_unit_wrench_works_in_a_permitted_motion(kind: type[Pair], seed: int)
         assert abs(partner.transmitted(ends, poses, whole) - amount) < 1e-10
 
 
-@pytest.mark.parametrize("kind", [k for k in KINDS if k not in (Gear, Belt, RollingOnCircle)], ids=lambda k: k.code)
+@pytest.mark.parametrize(
+    "kind", [k for k in KINDS.values() if k not in (Gear, Belt, RollingOnCircle)], ids=lambda k: k.code
+)
 @settings(max_examples=5)
 @given(seed=SEEDS)
 def test_unit_wrenches_are_the_rows_of_the_jacobian(kind: type[Pair], seed: int) -> None:

@@ -37,7 +37,7 @@ from tests.support import sample
 SEEDS = st.integers(0, 2**32 - 1)
 # What the picture of a pair needs besides names.
 SIZED: dict[str, dict[str, Any]] = {"G": {"teeth": (20, 40)}, "B": {"radii": (0.1, 0.2)}, "K": {"radius": 2.0}}
-every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.code for kind in KINDS])
+every_kind = pytest.mark.parametrize("kind", KINDS.values(), ids=[kind.code for kind in KINDS.values()])
 
 
 # --- glyphs ----------------------------------------------------------------------------------------------

@@ -28,7 +28,6 @@ from compoundkin.kinematics.groups.contract import GroupSolver
 from compoundkin.kinematics.groups.dyad import DyadSolver
 from compoundkin.kinematics.groups.pair_sides import Side
 from compoundkin.model.pairs import Pair
-from compoundkin.model.pairs.geared import as_geared
 from compoundkin.structure.mobility_count import Body, DrivenPair
 
 # How far beyond its range rounding takes the cosine of an angle that is flat.
@@ -269,7 +268,7 @@ def is_constructed(solver: GroupSolver) -> bool:
     if len(solver.group.bodies) != 1 or len(pairs) != 2 or len(solver.group.links) != 1:
         return False
     lower, higher = sorted(pairs, key=lambda pair: -pair.held)
-    return lower.is_simple and (as_geared(higher) is not None or _is_rack(lower, higher, solver.group.links[0]))
+    return lower.is_simple and (higher.is_geared or _is_rack(lower, higher, solver.group.links[0]))
 
 
 def _is_rack(lower: Pair, higher: Pair, link: str) -> bool:
@@ -387,7 +386,7 @@ def is_train(solver: GroupSolver) -> bool:
     """Return whether a group is wheels and carriers on as many pins and gears."""
     pins, gears = _pins_and_gears(solver)
     count = len(solver.group.bodies)
-    simple = all(pin.is_simple and pin.free_is_angle for pin in pins) and all(map(as_geared, gears))
+    simple = all(pin.is_simple and pin.free_is_angle for pin in pins) and all(gear.is_geared for gear in gears)
     return simple and len(pins) == len(gears) == len(solver.group.links) == count
 
 

@@ -27,7 +27,6 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.loads.mass import Mass
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.contract import constraint_scales
-from compoundkin.model.pairs.geared import as_geared
 from compoundkin.model.units import FORCES, LENGTHS, MASSES
 
 # Bodies that stand on each other deeper are refused: they are written and read one in another.
@@ -135,7 +134,7 @@ def plan_of(shown: PosedMechanism) -> ModelPlan:
     """Return what is to be written of a mechanism. Raises InvalidInput listing all that no model can say."""
     chains, problems = [], [*_prescribed(shown)]
     for pair in shown.structure.pairs:
-        if as_geared(pair):
+        if pair.is_geared:
             continue  # it joins no links, but ties angles of some that are joined
         chain = chain_of(shown, pair)
         if chain is not None:
@@ -198,7 +197,7 @@ def _plan(shown: PosedMechanism, tree: JointTree, driven: set[str]) -> ModelPlan
     if problems:
         raise InvalidInput(problems, heading=f"{shown.mechanism.title!r} cannot be said in MJCF")
     ties = {chain.pair.name: chain.tie for chain in _carrying(tree) if chain.tie}
-    ties.update({pair.name: geared_tie(tree, pair, shown.ends[pair.name]) for pair in shown.pairs if as_geared(pair)})
+    ties.update({pair.name: geared_tie(tree, pair, shown.ends[pair.name]) for pair in shown.pairs if pair.is_geared})
     for free in shown.structure.passive:
         ties[f"{free.link} on {free.on}"] = still_tie(tree, free.link, free.on)
     connected, halves = [], {}
