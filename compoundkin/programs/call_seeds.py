@@ -18,7 +18,7 @@ from compoundkin.kinematics.groups.group_equations import STRAY
 from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.backends import chosen_back_end
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, numbers_of_designs
-from compoundkin.programs.drawn_approach import DrawnApproach
+from compoundkin.programs.drawn_approach import DrawnApproach, DriverRoute
 from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, HOLDS, STEP, InputNumber, start_of
 from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
@@ -55,64 +55,60 @@ class CallSeeds:
         if not (path.can_march and is_quick):
             seeds = _solved_seeds(path.seeds, numbers, self.by, path.mechanism.recording.signs)
             return _seeded(path, numbers, seeds)
+        starts = self._starts(path, numbers)
         if poses == 1:
-            return _seeded(path, numbers, self._at_pose(path, numbers))
+            return _seeded(path, numbers, starts)
         given = dict(numbers.given)
-        for one, value in self._starts(path, numbers).items():
+        for one, value in starts.items():
             given[start_of(one) if one != HOLDS else one] = value
         for name, value in numbers.driver_values.items():
             given[InputNumber(DRIVE, name, STEP)] = np.diff(value, axis=1, append=value[:, -1:])
         return replace(numbers, given=given)
 
-    def _at_pose(self, path: RecordedPath, numbers: CallNumbers) -> dict[InputNumber, Number]:
-        """Return the seeds at one pose: continued from the drawing on the approach, or solved."""
-        drivers = numbers.driver_values
-        route = None if self._are_several(numbers) else self.approach.to_pose(drivers, FINER)
-        if route is None:
-            return _solved_seeds(path.seeds, numbers, self.by, path.mechanism.recording.signs)
-        home = {InputNumber(DRIVE, name, "0"): values[:, :1] for name, values in route.items()}
-        start = self._known_start(path, replace(numbers, given={**numbers.given, **home}))
-        return self._continued(path, numbers, start, route)
-
     def _starts(self, path: RecordedPath, numbers: CallNumbers) -> dict[InputNumber, Number]:
-        """Return the seeds at first poses: continued from the path's own dimensions, or solved for designs too far."""
+        """Return the seeds at first poses: continued from how the path is drawn, or solved for designs too far away."""
         designs = numbers.extent[0]
         first = replace(numbers, given={k: value[:, :1] for k, value in numbers.given.items()}, shape=(designs, 1))
         if self._are_several(numbers):
             return _solved_seeds(path.seeds, first, self.by, path.mechanism.recording.signs)
-        return self._continued(path, first, self._known_start(path, numbers), first.driver_values)
+        route = self.approach.route(numbers.driver_values, FINER)
+        return self._continued(path, first, self._drawn_start(path, first, route), route)
 
     def _are_several(self, numbers: CallNumbers) -> bool:
         """Tell whether designs have drivers' values of their own, or the path several designs."""
         drives = (value for one, value in numbers.given.items() if one.kind == DRIVE)
         return any(value.shape[0] > 1 for value in drives) or any(map(np.ndim, self.own.values()))
 
-    def _known_start(self, path: RecordedPath, numbers: CallNumbers) -> MarchStart:
-        """Return the start of the motion of the path's own dimensions."""
-        key = path.seeds, *(value.tobytes() for value in numbers.driver_values.values())
+    def _drawn_start(self, path: RecordedPath, first: CallNumbers, route: DriverRoute) -> MarchStart:
+        """Return the start of the path's own dimensions, where a route begins."""
+        home = {name: values[:, :1] for name, values in route.values.items()}
+        key = path.seeds, *(value.item() for value in home.values())
         start = self._known_starts.get(key)
         if start is None:
             if len(self._known_starts) >= STARTS_KEPT:
                 self._known_starts.clear()
-            start = self._known_starts[key] = self._own_start(path, numbers)
+            drawn = {InputNumber(DRIVE, name, "0"): value for name, value in home.items()}
+            own = {one: np.full((1, 1), value) for one, value in self.own.items()}
+            given = CallNumbers({**first.given, **drawn, **own}, (1, 1), first.still)
+            start = self._known_starts[key] = self._own_start(path, given)
         return start
 
     def _continued(
-        self, path: RecordedPath, first: CallNumbers, start: MarchStart, route: Mapping[str, Number]
+        self, path: RecordedPath, first: CallNumbers, start: MarchStart, route: DriverRoute
     ) -> dict[InputNumber, Number]:
-        """Return the seeds at the only pose, which is the last of a route; the start is at its first."""
+        """Return the seeds at the first pose, where a route ends that begins at the start."""
         designs = first.extent[0]
         seeds = {one: np.full(first.extent, np.nan) for one in path.seeds} | {HOLDS: np.zeros((designs, 1))}
         far = np.ones(designs, dtype=bool)
         if start.holds:
-            steps = continuation_numbers(first, self.own, start.states, route)
+            steps = continuation_numbers(first, self.own, start.states, route.values)
             # the form tells for which zero rates the path is recorded
             if steps.form not in self._continuations:
                 self._continuations[steps.form] = DesignContinuation.of(path, steps, self.backend)
             ends, near = self._continuations[steps.form].ends(steps)
             seeds |= {**{one: ends[one].copy() for one in path.seeds}, HOLDS: near[:, None].astype(float)}
             far = ~near
-        if start.is_first and far.any():
+        if route.is_nearest and far.any():
             signs = path.mechanism.recording.signs
             solved = _solved_seeds(path.seeds, numbers_of_designs(first, np.flatnonzero(far)), self.by, signs)
             for one, value in solved.items():
@@ -120,29 +116,19 @@ class CallSeeds:
         return seeds
 
     def _own_start(self, path: RecordedPath, numbers: CallNumbers) -> MarchStart:
-        """Solve the motion of the path's own dimensions."""
-        own = {one: np.full((1, 1), value) for one, value in self.own.items()}
-        whole = replace(numbers, given={**numbers.given, **own}, shape=(1, numbers.extent[1]))
-        for _, solved in solve_in_parts(self.by, whole, np.arange(1)):
+        """Solve one pose of the path's own dimensions."""
+        for _, solved in solve_in_parts(self.by, numbers, np.arange(1)):
             if solved is not None:
-                states = {one: value[:, :1] for one, value in seed_values(path.seeds, solved.motion).items()}
-                holds = _in_configuration(solved.motion, path.mechanism.recording.signs, slice(0, 1))
-                # `solve` gives up a design that cannot be assembled as drawn, even if it could along its motion
-                near, far = solved.motion.followed.nearest_to_home
-                return MarchStart(states, bool(holds[0]) and far == 0.0, near == 0)
-        return MarchStart({}, False, False)
+                states = seed_values(path.seeds, solved.motion)
+                return MarchStart(states, bool(_in_configuration(solved.motion, path.mechanism.recording.signs)[0]))
+        return MarchStart({}, False)
 
 
 class MarchStart(NamedTuple):
-    """The start of the motion with the path's own dimensions.
-
-    `states` are those at its first pose, which `holds` where they have the program's configuration, and `is_first`
-    where solving reaches it before the other poses.
-    """
+    """The states of groups at one pose; it `holds` where they have the program's configuration."""
 
     states: Mapping[InputNumber, Number]
     holds: bool
-    is_first: bool
 
 
 def _seeded(path: RecordedPath, numbers: CallNumbers, seeds: Mapping[InputNumber, Number]) -> CallNumbers:
@@ -164,13 +150,13 @@ def _solved_seeds(
     return values
 
 
-def _in_configuration(motion: Motion, signs: Mapping[int, int], where: slice = slice(None)) -> Number:
-    """Tell which designs have the signs of a program, at all poses or some."""
+def _in_configuration(motion: Motion, signs: Mapping[int, int]) -> Number:
+    """Tell which designs have the signs of a program at all poses."""
     designs, poses = np.arange(motion.failed.shape[0])[:, None], np.arange(float(motion.failed.shape[1]))[None]
-    good = np.all(motion.failed[:, where] == 0, axis=1)
+    good = np.all(motion.failed == 0, axis=1)
     for k, sign in signs.items():
         own = np.broadcast_to(motion.followed.sign(k, designs, poses), motion.failed.shape)
-        good = good & np.all(own[:, where] == sign, axis=1)
+        good = good & np.all(own == sign, axis=1)
     return good
 
 

@@ -8,10 +8,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compoundkin.base.arrays import TURN, Number
+from compoundkin.base.arrays import TURN, Number, ascending
 from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.curve.change_points import NEAR
-from compoundkin.kinematics.curve.driver_path import FEWEST, MOST, SPACING, approach, drawn_value, driver_path
+from compoundkin.kinematics.curve.driver_path import (
+    CLOSE,
+    FEWEST,
+    MOST,
+    SPACING,
+    PathOfPoses,
+    approach,
+    drawn_value,
+    driver_path,
+)
 from compoundkin.kinematics.curve.modes import StatedModes
 from compoundkin.kinematics.driver_values import Inputs
 from compoundkin.kinematics.motion import Motion
@@ -106,6 +115,16 @@ def _clear_part(places: Number, way: ApproachWay, margins: Callable[[Mapping[str
     return float(places[max(int(unclear[0]) - 1, 0)] if len(unclear) else places[-1])
 
 
+class DriverRoute(NamedTuple):
+    """The drivers' values (1, values) from where they are drawn to the first pose of a motion.
+
+    That is the motion's nearest one, or others come first on the way.
+    """
+
+    values: Mapping[str, Number]
+    is_nearest: bool
+
+
 class DrawnApproach(ShortRepr):
     """The approach from where a path's drivers are drawn to its motions, as `solve` takes it."""
 
@@ -131,11 +150,31 @@ class DrawnApproach(ShortRepr):
         straight = self.to_pose(values) if all(value.size == 1 for value in values.values()) else None
         if straight is not None:
             return straight if any(way.size > 1 for way in straight.values()) else None
-        designs, poses = np.broadcast_shapes(*(value.shape for value in values.values()))
-        drives = {name: (value,) for name, value in values.items()}
-        given = Inputs((designs, poses), self.reference.inputs.ends, drives)
-        way = approach(*driver_path(self.reference.solving_order, given, self.shown.poses, self.shown.beside))
+        way = approach(*self._path(values))
         return None if way is None else {name: np.atleast_2d(drive[0]) for name, drive in way.drives.items()}
+
+    def route(self, values: Mapping[str, Number], finer: int) -> DriverRoute:
+        """Return the way of drivers to the first pose of a motion, as `solve` goes, in steps so much finer."""
+        if all(value.size == 1 for value in values.values()):
+            straight = self.to_pose(values, finer)
+            if straight is not None:
+                return DriverRoute(straight, True)
+        path, poses = self._path(values)
+        places, home = poses.of_poses[0], path.home
+        low, high = sorted((home, places[0]))
+        knots = ascending(path.samples[(path.samples > low) & (path.samples < high)], [low, high])
+        knots = np.interp(np.arange(finer * (len(knots) - 1) + 1) / finer, np.arange(len(knots)), knots)
+        own = path.at(knots[::-1] if places[0] < home else knots).drives
+        ways = {name: np.array(np.broadcast_to(own[name][0], (1, len(knots)))) for name in values}
+        for name, value in values.items():
+            ways[name][0, -1] = value[0, 0]
+        return DriverRoute(ways, bool(np.all(np.abs(places - home) > np.abs(places[0] - home) - CLOSE)))
+
+    def _path(self, values: Mapping[str, Number]) -> PathOfPoses:
+        """Return the drivers' path of a motion."""
+        extent = np.broadcast_shapes(*(value.shape for value in values.values()))
+        given = Inputs(extent, self.reference.inputs.ends, {name: (value,) for name, value in values.items()})
+        return driver_path(self.reference.solving_order, given, self.shown.poses, self.shown.beside)
 
     def to_pose(self, values: Mapping[str, Number], finer: int = 1) -> Mapping[str, Number] | None:
         """Return the values of drivers from where they are drawn to one pose, (1, values), both included.

@@ -105,10 +105,6 @@ def six_bar_rows() -> Iterator[Row]:
     yield from compared(f"six-bar, {LOOPED} poses, each", loop, LOOPED, 3, "program")
     few, one = np.linspace(0.0, 2 * np.pi, FEW), np.array([0.7])
     listed, earlier, at = few.tolist(), path(few, speed=six_bar.SPEED), few / six_bar.SPEED
-    # drawn beside it, so that each new design is looked at on its way from there
-    drawn = ck.compile(ck.load("six-bar"), POINT, free="crank.D.x")
-    arc = np.linspace(2.0, 4.0, FEW)
-    designs = cycle(14.0 + 0.01 * np.arange(50))
     calls = {
         "an array": lambda: path(few, speed=six_bar.SPEED),
         "a list": lambda: path(listed, speed=six_bar.SPEED),
@@ -116,12 +112,37 @@ def six_bar_rows() -> Iterator[Row]:
         "into an earlier result": lambda: path(few, speed=six_bar.SPEED, out=earlier),
         "one pose": lambda: path(one, speed=six_bar.SPEED),
         "a number": lambda: path(0.7, speed=six_bar.SPEED),
-        "an arc beside the drawing": lambda: drawn(arc, speed=six_bar.SPEED),
-        "an arc beside the drawing, of a new design": lambda: drawn(
-            arc, {"crank.D.x": next(designs)}, speed=six_bar.SPEED
-        ),
     }
     yield from compared(f"a call of the six-bar's program, {FEW} poses", calls, 1, 300, "an array")
+
+
+def away_rows() -> Iterator[Row]:
+    """Calls at poses other than the drawn one, from which configurations are told."""
+    arc, designs = np.linspace(2.0, 4.0, FEW), cycle(14.0 + 0.01 * np.arange(50))
+    six, led, third = (
+        ck.compile(ck.load(name), outputs, free=free)
+        for name, outputs, free in (
+            ("six-bar", POINT, "crank.D.x"),
+            ("five-bar", ["P"], ()),
+            ("class-iii-six-bar", ["B3"], ()),
+        )
+    )
+    pose = {name: value + 0.1 for name, value in own_values(led).items()}
+    one, several = (own_values(third)["crank"] + step for step in (0.2, 0.2 + 0.5 * np.linspace(0.0, 1.0, FEW)))
+    calls = {
+        "six-bar, an arc": lambda: six(arc, speed=six_bar.SPEED),
+        "six-bar, an arc, a new design": lambda: six(arc, {"crank.D.x": next(designs)}, speed=six_bar.SPEED),
+        "five-bar of two drivers, one pose": lambda: led(pose),
+        "class III group, one pose": lambda: third(one),
+        "class III group, an arc": lambda: third(several),
+    }
+    yield from compared(f"a call away from the drawing, {FEW} poses of an arc", calls, 1, 200, "six-bar, an arc")
+
+
+def own_values(path: ck.results.CompiledPath) -> dict[str, float]:
+    """The first values of a path's drivers in its own mechanism."""
+    drives = ck.solve(path.mechanism(), order=0).inputs.drives
+    return {name: float(np.ravel(value)[0]) for name, (value, *_) in drives.items()}
 
 
 def _kept_rows(path: ck.results.CompiledPath, crank: Any, rounds: int) -> Iterator[Row]:
@@ -264,7 +285,7 @@ def main() -> None:
     save = parser.parse_args().save
     print(f"On {machine()}.\n\n{HEAD}")
     rows = []
-    for part in (six_bar_rows, four_bar_rows, study_rows, force_rows, start_rows, growth_rows):
+    for part in (six_bar_rows, away_rows, four_bar_rows, study_rows, force_rows, start_rows, growth_rows):
         for one in part():
             rows.append(f"| {' | '.join(one)} |")
             print(rows[-1], flush=True)
