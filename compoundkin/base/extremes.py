@@ -110,9 +110,12 @@ class Windows(ShortRepr):
 
     @cached_property
     def _off_at_ends(self) -> Number:
-        off = np.abs(self.polynomials @ AT_ENDS - self.smooth_values[..., :: len(SAMPLES) - 1])
+        off = self.polynomials @ AT_ENDS
+        off -= self.smooth_values[..., :: len(SAMPLES) - 1]
+        np.abs(off, out=off)
         # what is unknown or without limit at an end tells nothing
-        return np.where(off < np.inf, off, 0.0)
+        np.copyto(off, 0.0, where=~(off < np.inf))
+        return off
 
     @cached_property
     def _sizes(self) -> Number:
@@ -142,7 +145,7 @@ class Windows(ShortRepr):
 
         What varies by no more than rounding of `largest` is greatest from the beginning.
         """
-        c, start = self.polynomials.T, FINE[self._finest(sign)[0]]
+        c, start = self.polynomials.T, FINE.take(self._finest(sign)[0])
         both = (DERIVATIVES.reshape(-1, INNER) @ c).reshape(INNER - 1, 2, -1)
         spacing = FINE[1] - FINE[0]
         low, high = np.maximum(start - spacing, -1.0), np.minimum(start + spacing, 1.0)
@@ -296,24 +299,24 @@ def peaks(
     for left in range(narrowings, -1, -1):
         good = windows.right(TRUSTED, largest) if left else np.zeros(len(which), dtype=bool)
         if good.any():
-            some, index = (windows, which) if good.all() else (windows.some(good), which[good])
-            inside, *height = some.vertices(sign[good], largest[good])
+            some = windows if good.all() else windows.some(good)
+            index, own_kind, own_sign, own_largest = _where(good, which, kind, sign, largest)
+            inside, *height = some.vertices(own_sign, own_largest)
             found.append((index, f.places(index, some.at(inside)), *height, np.abs(inside) < 1.0))
-            np.fmax.at(best, kind[good], height[0])
+            np.fmax.at(best, own_kind, height[0])
             if len(index) == len(which):
                 break
             windows, places = windows.some(~good), places[~good]
-            which, kind, sign, largest = (v[~good] for v in (which, kind, sign, largest))
+            which, kind, sign, largest = _where(~good, which, kind, sign, largest)
         k, index = windows.greatest(sign), np.arange(len(which))
         value = sign * windows.values[index, k]
         np.fmax.at(best, kind, value)
         yield Offers(kind, value, places[index, k], exact=False)
         going = ~(windows.most(sign) <= best[kind] + ROUNDING * largest) & (windows.high > windows.low)
-        ends = (ends[going] for ends in windows.beside(k))
-        which, kind, sign, largest = (v[going] for v in (which, kind, sign, largest))
+        low, high, which, kind, sign, largest = _where(going, *windows.beside(k), which, kind, sign, largest)
         if not (left and len(which)):
             break
-        windows, places = f.windows(which, *ends)
+        windows, places = f.windows(which, low, high)
     if found:
         yield from _vertices(f, sought, found, best, last)
 
@@ -322,19 +325,28 @@ def _vertices(
     f: ValuesAtPlaces, sought: SoughtPeaks, found: list[tuple[Number, ...]], best: Number, last: int
 ) -> Iterator[Offers]:
     """Yield the vertices that are highest, of equally high ones the first; with those less than a place beyond."""
-    which, place, low, high, inside = (np.concatenate(v) for v in zip(*found, strict=True))
-    kind, alike = sought.kind[which], ALIKE * sought.range[which] + ROUNDING * sought.largest[which]
-    may, first = high >= best[kind] - alike, np.full(len(best), np.inf)
-    np.fmin.at(first, kind[may], place[may])
+    which, place, low, high, inside = found[0] if len(found) == 1 else map(np.concatenate, zip(*found, strict=True))
+    kind, alike = sought.kind.take(which), ALIKE * sought.range.take(which) + ROUNDING * sought.largest.take(which)
+    may, first = high >= best.take(kind) - alike, np.full(len(best), np.inf)
+    np.fmin.at(first, *_where(may, kind, place))
     # a vertex just before the end of a cycle is beside its beginning
-    near = (place <= first[kind] + 1.0) | ((first[kind] == 0.0) & (place >= last - 1.0)) | (high - low > alike)
-    if not (may & near).all():
-        which, place, kind, inside = (v[may & near] for v in (which, place, kind, inside))
+    beside = first.take(kind)
+    near = (place <= beside + 1.0) | ((beside == 0.0) & (place >= last - 1.0)) | (high - low > alike)
+    which, place, kind, inside = _where(may & near, which, place, kind, inside)
     if len(which):
-        value = sought.sign[which] * f.values(which, place)
-        yield Offers(kind[inside], value[inside], place[inside], vertex=True)
-        if not inside.all():
-            yield Offers(kind[~inside], value[~inside], place[~inside])
+        value = sought.sign.take(which) * f.values(which, place)
+        for is_vertex in (True, False):
+            own_kind, own_value, own_place = _where(inside == is_vertex, kind, value, place)
+            if is_vertex or len(own_kind):
+                yield Offers(own_kind, own_value, own_place, vertex=is_vertex)
+
+
+def _where(mask: Number, *values: Number) -> tuple[Number, ...]:
+    """Return values where a mask is true, (n,); where it is so everywhere themselves."""
+    if mask.all():
+        return values
+    index = np.flatnonzero(mask)
+    return tuple([value.take(index) for value in values])
 
 
 def best_of(offers: Sequence[Offers], largest: Number, squared: Number) -> tuple[Number, Number, Number]:
@@ -349,8 +361,7 @@ def best_of(offers: Sequence[Offers], largest: Number, squared: Number) -> tuple
     slack = np.where(squared & (np.abs(best) <= ZERO * largest), ZERO, ROUNDING) * largest
     sample, place, vertex = (np.full(len(largest), np.inf) for _ in range(3))
     for one in offers:
-        near = one.value >= (best - slack)[one.kind]
-        kind, at = one.kind[near], one.place[near]
+        kind, at = _where(one.value >= (best - slack).take(one.kind), one.kind, one.place)
         np.fmin.at(place if one.exact else sample, kind, at)
         if one.vertex:
             np.fmin.at(vertex, kind, at)

@@ -96,7 +96,8 @@ class CourseSearch(ShortRepr):
         offers = [Offers(every, best, k / parts)]
         rows, k = _peaks(course, best)
         if len(rows):
-            sought = SoughtPeaks(rows, np.full(len(rows), self.sign), largest[rows], (best - least)[rows])
+            span = best - least
+            sought = SoughtPeaks(rows, np.full(len(rows), self.sign), largest.take(rows), span.take(rows))
             f = DesignCourses(self, rows)
             windows, places = f.windows_around(k, course.shape[1], parts)
             offers += peaks(f, sought, windows, places, best, self.designs.poses - 1, NARROWINGS)
@@ -168,12 +169,15 @@ def _peaks(course: Number, best: Number) -> tuple[Number, Number]:
     if poses < 3:
         return rows, k
     # the bend at a neighbour stands for that at an end
-    inner = rows * poses + np.clip(k, 1, poses - 2)
+    inner = found + (k == 0) - (k == poses - 1)
     before, own, after = (flat.take(inner + step) for step in (-1, 0, 1))
-    added = MOST_ADDED * np.abs((after - own) - (own - before))
-    best = best[rows]
-    may = (flat.take(found) + added >= best) & (added > ROUNDING * np.abs(best))
-    return rows[may], k[may]
+    after -= own
+    own -= before
+    added = np.abs(after - own)
+    added *= MOST_ADDED
+    best = best.take(rows)
+    may = np.flatnonzero((flat.take(found) + added >= best) & (added > ROUNDING * np.abs(best)))
+    return rows.take(may), k.take(may)
 
 
 # By how much each figure counts the greatest and the least value.
