@@ -9,7 +9,10 @@ from __future__ import annotations
 
 from compoundkin.analysis.cam_analysis import cam_pairs
 from compoundkin.model.cam_mechanism import cam_mechanism
-from compoundkin.model.profiles import Profile, conjugate, constant_breadth, disc, formula, profile, synthesise
+from compoundkin.model.profiles import Profile
+from compoundkin.model.profiles.double_cams import conjugate, constant_breadth
+from compoundkin.model.profiles.profile import disc, formula, profile
+from compoundkin.model.profiles.synthesised import synthesise
 
 __all__ = [
     "Profile",

@@ -15,7 +15,6 @@ from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggesti
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.derived.guides import direction_of, pressure_angle, velocity_at
 from compoundkin.model.pairs.profile_contact import ProfileContact, as_profile_contact
-from compoundkin.model.profiles import Synthesised
 
 # Greater pressure angles (degrees) load the guide or the pivot too much. Source: R. L. Norton, Cam Design and
 # Manufacturing Handbook, 2nd ed., Industrial Press 2009, section 7.1.
@@ -95,6 +94,8 @@ class CamAnalysis(DisplaysHtml):
         return tuple(self._warnings())
 
     def _warnings(self) -> Iterator[str]:
+        from compoundkin.model.profiles.synthesised import Synthesised
+
         found, allowed = np.rad2deg(self.greatest_pressure_angle), np.rad2deg(self.allowed_pressure_angle)
         if found > allowed:
             yield f"The pressure angle reaches {found:.4g} degrees, more than the customary {allowed:.4g}."

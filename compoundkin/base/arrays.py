@@ -264,3 +264,8 @@ class Vectors(np.ndarray[Any, np.dtype[np.complex128]]):
         """The components, in a last axis of length 2."""
         plain = np.asarray(self)
         return np.stack([plain.real, plain.imag], axis=-1)
+
+
+def as_number(value: Number) -> Number:
+    """Return a number as Python's, an array as it is."""
+    return value if isinstance(value, np.ndarray) and value.ndim else float(value)

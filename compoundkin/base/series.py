@@ -20,6 +20,7 @@ import numpy as np
 from compoundkin.base.arrays import (
     PLAIN,
     Number,
+    as_number,
     complex_of,
     convolution,
     cross,
@@ -268,3 +269,38 @@ def planar_series(x: Series, y: Series) -> Series:
     if len(x.c) == len(y.c):
         return Series(tuple([complex_of(a, b) for a, b in zip(x.c, y.c, strict=True)]))
     return x + y * 1j
+
+
+def taylor(values: tuple[Number, ...], t: Number, order: int) -> Series:
+    """Return a coordinate at times t with its derivatives, from its value, speed, acceleration ... at time 0.
+
+    >>> taylor((1.0, 2.0, 6.0), 2.0, order=2).c
+    (17.0, 14.0, 3.0)
+    """
+    found = []
+    for k in range(order + 1):
+        total = values[-1] if k < len(values) else 0.0
+        for j in range(len(values) - 2, k - 1, -1):
+            if type(total) is float and total == 0.0 and type(values[j]) is float:
+                total = 0.0 + values[j]  # at all times
+            else:
+                total = (total * t / (j - k + 1) if j > k else total * t) + values[j]
+        if k < len(values) - 1 and type(total) is float and isinstance(t, np.ndarray):
+            everywhere = np.empty(t.shape)
+            everywhere.fill(total)
+            total = everywhere
+        found.append(as_number(total))
+    return from_derivatives(found)
+
+
+def from_derivatives(derivatives: list[Number]) -> Series:
+    """Return the series of a value and its derivatives.
+
+    >>> from_derivatives([1.0, 2.0, 3.0, 6.0]).c
+    (1.0, 2.0, 1.5, 1.0)
+    """
+    factor, out = 1.0, []
+    for k, derivative in enumerate(derivatives):
+        factor *= max(k, 1)
+        out.append(derivative / factor if k > 1 else derivative)
+    return Series(tuple(out))

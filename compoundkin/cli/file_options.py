@@ -120,9 +120,12 @@ def _linkage(text: str) -> Mechanism | None:
 def _needs_lengths(text: str) -> UnknownName | None:
     """Return the error of a linkage without its lengths; None for any other name."""
     from compoundkin.files.shipped_mechanisms import shipped
+
+    if text in shipped():
+        return None
     from compoundkin.synthesis.linkages import is_linkage, kind_named
 
-    if text in shipped() or not is_linkage(f"{text}:"):
+    if not is_linkage(f"{text}:"):
         return None
     kind = kind_named(text)
     such = f'"{kind.name}:{kind.example}", what they are lists compoundkin new --list'

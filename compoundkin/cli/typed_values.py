@@ -16,7 +16,6 @@ from compoundkin.kinematics.driver_values import FULL_TURN
 from compoundkin.model.elements import Drive
 from compoundkin.model.fields import Item
 from compoundkin.model.geometry import FRAME
-from compoundkin.model.loads.force import force, torque
 from compoundkin.model.loads.gravity import gravity
 from compoundkin.model.loads.mass import mass
 from compoundkin.model.mechanism import Mechanism
@@ -180,6 +179,8 @@ def with_loads(mechanism: Mechanism, options: Mapping[str, Any]) -> Mechanism:
     given = {option: options[name] for option, name in LOADS.items() if options[name]}
     if not given:
         return mechanism
+    from compoundkin.model.loads.force import torque
+
     units = _units(mechanism, options["units"])
     items = [_force(mechanism, units, text) for text in options["forces_at"]]
     for text in options["torques"]:
@@ -209,6 +210,8 @@ def _key(item: Item) -> tuple[str, ...]:
 
 def _force(mechanism: Mechanism, units: Units, text: str) -> Item:
     """Return a force on a pin, or on a point of one link."""
+    from compoundkin.model.loads.force import force
+
     place, x, y = _named(mechanism, "--load", text, 2, _sizes("force", units.force))
     link, _, letter = place.rpartition(".")
     carriers = mechanism.carriers

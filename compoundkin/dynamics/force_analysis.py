@@ -42,7 +42,6 @@ from compoundkin.kinematics.jacobian import moved_alone
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.loads.motor import as_motor
 from compoundkin.model.loads.stop import as_stop
-from compoundkin.model.mechanism import Mechanism
 
 # A stop is passed from this depth on, in radians or parts of the mechanism's size: rests of simulations are within.
 PASSED = 1e-6
@@ -108,14 +107,9 @@ def _check_analysable(motion: Motion, inertia: bool) -> None:
         raise InvalidInput(Problem("motion", what, "solve(..., order=1), or 2"))
 
 
-def has_loads(mechanism: Mechanism) -> bool:
-    """Return whether a mechanism has units, and masses or loads."""
-    return mechanism.units is not None and bool(mechanism.masses or mechanism.loads)
-
-
 def loaded_forces(motion: Motion) -> Forces | None:
     """Return the forces of a motion; None without masses and loads. Without accelerations they are those of statics."""
-    if not has_loads(motion.mechanism) or not motion.assembled.any():
+    if not motion.mechanism.has_loads or not motion.assembled.any():
         return None
     return force_analysis(motion, inertia=motion.order >= 2)
 

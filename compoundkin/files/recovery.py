@@ -183,7 +183,7 @@ class Recovery:
 
 def wide_disc() -> Profile:
     """Return what takes the place of a broken profile: any roller fits into it."""
-    from compoundkin.model.profiles import disc
+    from compoundkin.model.profiles.profile import disc
 
     return disc(1e9)
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import isfinite, prod
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,15 +15,16 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.base.poses import End
-from compoundkin.base.series import Series
+from compoundkin.base.series import Series, taylor
 from compoundkin.kinematics.block import between_poses, picked, picked_slope, rates, rectangle, repeated, slope
 from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.attributes import HIGHEST_ORDER, OF_POINTS
 from compoundkin.model.elements import Drive
-from compoundkin.model.laws import Law
-from compoundkin.model.laws.constant_laws import taylor
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.contract import Ends
+
+if TYPE_CHECKING:
+    from compoundkin.model.laws import Law
 
 # A period is sampled as finely as a full turn in steps of five degrees.
 SAMPLES = 73

@@ -14,7 +14,8 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.cam import cam
 from compoundkin.model.pairs.face import face
 from compoundkin.model.pairs.prismatic import slide
-from compoundkin.model.profiles import DoubleCam, Synthesised
+from compoundkin.model.profiles.double_cams import DoubleCam
+from compoundkin.model.profiles.synthesised import Synthesised
 
 # Five degrees from pose to pose.
 POSES = 73
@@ -31,7 +32,7 @@ def cam_mechanism(cams: Synthesised | DoubleCam, *, title: str = "", unit: str =
     overconstrained and moves all the same, which `solve` finds out and checks.
 
     >>> from compoundkin.model.laws import fall, program, rise
-    >>> from compoundkin.model.profiles import conjugate
+    >>> from compoundkin.model.profiles.double_cams import conjugate
     >>> cams = conjugate(program(rise(20, over=np.pi), fall(20, over=np.pi)), base=40, roller=10)
     >>> cam_mechanism(cams).link("follower").points["Q"]
     (-120+0j)

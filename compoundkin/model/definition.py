@@ -7,14 +7,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, permutations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.model.elements import Drawn, Drive, Expectation, Link, Mode
 from compoundkin.model.fields import Item
 from compoundkin.model.geometry import Geometry
-from compoundkin.model.loads.contract import Load, NamedParts
+from compoundkin.model.loads.contract import ListedLoad, Load, NamedParts
 from compoundkin.model.loads.gravity import Gravity
 from compoundkin.model.loads.mass import Mass
 from compoundkin.model.outlines import LinkOutline
@@ -87,19 +87,25 @@ class LoadDefinition:
         """The loads by name, completed with the links they act on."""
         return {item.name: item.completed(self.names) for item in self.items if isinstance(item, Load)}
 
+    @property
+    def has_loads(self) -> bool:
+        """Whether it has units, and masses or loads."""
+        return self.units is not None and bool(self.masses or self.loads)
+
     @cached_property
     def frictions(self) -> dict[str, Friction]:
         """The frictions by their pairs, or by the letter of a multiple pin for all its pairs."""
-        from compoundkin.model.loads.friction import Friction
-
-        return {self._pair_meant(item.pair): item for item in self.items if isinstance(item, Friction)}
+        return cast("dict[str, Friction]", self._properties("frictions"))
 
     @cached_property
     def pretensions(self) -> dict[str, Pretension]:
         """The pretensions by their belts."""
-        from compoundkin.model.loads.pretension import Pretension
+        return cast("dict[str, Pretension]", self._properties("pretensions"))
 
-        return {self._pair_meant(item.pair): item for item in self.items if isinstance(item, Pretension)}
+    def _properties(self, table: str) -> dict[str, ListedLoad]:
+        """Return the properties of pairs of a table, by their pairs."""
+        listed = (item for item in self.items if isinstance(item, ListedLoad) and item.table == table)
+        return {self._pair_meant(item.property_of): item for item in listed}
 
     @cached_property
     def outlines(self) -> dict[str, LinkOutline]:

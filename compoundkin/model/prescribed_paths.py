@@ -21,7 +21,8 @@ from compoundkin.base.series import Series, planar_series
 from compoundkin.model.fields import Key
 from compoundkin.model.laws import FunctionLaw, Law, TimeTable, as_law, constant_speed
 from compoundkin.model.laws.constant_laws import ComparedByValue
-from compoundkin.model.profiles import PointsProfile, Profile
+from compoundkin.model.profiles import Profile
+from compoundkin.model.profiles.profile import PointsProfile
 
 
 class Path(CopiesFields, ComparedByValue, ABC):

@@ -25,7 +25,9 @@ from compoundkin.model.pairs.cam import cam
 from compoundkin.model.pairs.face import face
 from compoundkin.model.pairs.prismatic import slide
 from compoundkin.model.pairs.slot import slot
-from compoundkin.model.profiles import Profile, Synthesised, disc, formula, profile
+from compoundkin.model.profiles import Profile
+from compoundkin.model.profiles.profile import disc, formula, profile
+from compoundkin.model.profiles.synthesised import Synthesised
 from tests.support import examples
 
 lengths = st.floats(0.001, 1e6)

@@ -9,8 +9,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.model.laws.motion_programs import Program
-from compoundkin.model.profiles import Synthesised, synthesise
-from compoundkin.model.profiles.synthesised import least_base
+from compoundkin.model.profiles.synthesised import Synthesised, least_base, synthesise
 
 SPEED = 2.0
 ANGLES = np.linspace(-1.0, 12.0, 700)

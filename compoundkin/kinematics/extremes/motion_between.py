@@ -13,13 +13,12 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, column, whole_turns
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.base.poses import FIXED, Pose
-from compoundkin.base.series import Series
+from compoundkin.base.series import Series, taylor
 from compoundkin.kinematics.block import Block, JoinedBlocks, blocks, poses_at, with_poses
 from compoundkin.kinematics.curve.double_roots import NEARLY, solved_near
 from compoundkin.kinematics.driver_values import Inputs, fit, mapped
 from compoundkin.kinematics.motion import LinkMotion, Motion, PairMotion, PointMotion
 from compoundkin.model.attributes import HIGHEST_ORDER
-from compoundkin.model.laws.constant_laws import taylor
 
 
 @dataclass(frozen=True, repr=False)

@@ -8,10 +8,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from compoundkin.base.arguments import real_numbers
-from compoundkin.base.arrays import Number
+from compoundkin.base.arrays import Number, as_number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidMechanism, Problem
-from compoundkin.base.series import Series
+from compoundkin.base.series import Series, taylor
 from compoundkin.model.fields import Key
 
 
@@ -26,46 +26,6 @@ class ComparedByValue:
 
     def __hash__(self) -> int:
         return hash(type(self).__name__)
-
-
-def taylor(values: tuple[Number, ...], t: Number, order: int) -> Series:
-    """Return a coordinate at times t with its derivatives, from its value, speed, acceleration ... at time 0.
-
-    >>> taylor((1.0, 2.0, 6.0), 2.0, order=2).c
-    (17.0, 14.0, 3.0)
-    """
-    found = []
-    for k in range(order + 1):
-        total = values[-1] if k < len(values) else 0.0
-        for j in range(len(values) - 2, k - 1, -1):
-            if type(total) is float and total == 0.0 and type(values[j]) is float:
-                total = 0.0 + values[j]  # at all times
-            else:
-                total = (total * t / (j - k + 1) if j > k else total * t) + values[j]
-        if k < len(values) - 1 and type(total) is float and isinstance(t, np.ndarray):
-            everywhere = np.empty(t.shape)
-            everywhere.fill(total)
-            total = everywhere
-        found.append(as_number(total))
-    return from_derivatives(found)
-
-
-def from_derivatives(derivatives: list[Number]) -> Series:
-    """Return the series of a value and its derivatives.
-
-    >>> from_derivatives([1.0, 2.0, 3.0, 6.0]).c
-    (1.0, 2.0, 1.5, 1.0)
-    """
-    factor, out = 1.0, []
-    for k, derivative in enumerate(derivatives):
-        factor *= max(k, 1)
-        out.append(derivative / factor if k > 1 else derivative)
-    return Series(tuple(out))
-
-
-def as_number(value: Number) -> Number:
-    """Return a number as Python's, an array as it is."""
-    return value if isinstance(value, np.ndarray) and value.ndim else float(value)
 
 
 def check_law_numbers(law: Any, *names: str) -> None:

@@ -10,12 +10,12 @@ from typing import Any, ClassVar, TypeAlias
 import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
-from compoundkin.base.arrays import Number
+from compoundkin.base.arrays import Number, as_number
 from compoundkin.base.copies import CopiesFunction
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.base.series import Series, compose_series, constant
+from compoundkin.base.series import Series, compose_series, constant, from_derivatives
 from compoundkin.model.fields import Key
-from compoundkin.model.laws.constant_laws import ComparedByValue, as_number, from_derivatives
+from compoundkin.model.laws.constant_laws import ComparedByValue
 
 Array: TypeAlias = np.ndarray[Any, Any]
 MOST_DERIVATIVES = 4

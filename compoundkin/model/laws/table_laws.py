@@ -9,12 +9,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from compoundkin.base.arguments import is_whole
-from compoundkin.base.arrays import Number
+from compoundkin.base.arrays import Number, as_number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem
-from compoundkin.base.series import Series
+from compoundkin.base.series import Series, from_derivatives, taylor
 from compoundkin.model.fields import Key
-from compoundkin.model.laws.constant_laws import ComparedByValue, as_number, check_law_numbers, from_derivatives, taylor
+from compoundkin.model.laws.constant_laws import ComparedByValue, check_law_numbers
 
 # Times beyond an end of a table by this part of its range or less are that end: rounding of 0.1 + 0.1 + 0.1.
 SLACK = 1e-9

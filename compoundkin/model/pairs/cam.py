@@ -41,7 +41,7 @@ class Cam(ProfileContact, Guided, FrictionContact):
 
     Held: the distance of the roller from the profile. Free: the profile's parameter at the contact, and the angle.
 
-    >>> from compoundkin.model.profiles import disc
+    >>> from compoundkin.model.profiles.profile import disc
     >>> cam("follower", on="cam", at="P", profile=disc(20, (5, 0)), radius=8).name
     'follower/cam'
     """

@@ -58,7 +58,7 @@ class Face(ProfileContact, FrictionContact):
     Held: the distance of the face from the profile. Free: the displacement of the contact along the face from `at`, and
     the angle.
 
-    >>> from compoundkin.model.profiles import disc
+    >>> from compoundkin.model.profiles.profile import disc
     >>> face("follower", on="cam", at="P", profile=disc(20, (5, 0)), side=-1).letters
     ('P',)
     """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -29,18 +29,11 @@ from compoundkin.model.pairs.contract import (
     StraightLine,
     jacobian_of_rows,
 )
-from compoundkin.model.pairs.loop_terms import (
-    Auxiliary,
-    LoopTerms,
-    Sum,
-    Unknown,
-    Vector,
-    angle_of,
-    difference,
-    end_angle,
-)
 from compoundkin.model.pairs.symbols import Mark, Sliding, known_range
 from compoundkin.model.pairs.travel_limits import Reach, TravelLimited, reach_key
+
+if TYPE_CHECKING:
+    from compoundkin.model.pairs.loop_terms import LoopTerms
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,6 +173,17 @@ class Prismatic(FrictionGuide, Drivable, Orienting, Guided, TravelLimited, Drawn
 
     def loop_terms(self, ends: Ends) -> LoopTerms:
         """Return the vector along the guide, and the equation of the angles of block and guide."""
+        from compoundkin.model.pairs.loop_terms import (
+            Auxiliary,
+            LoopTerms,
+            Sum,
+            Unknown,
+            Vector,
+            angle_of,
+            difference,
+            end_angle,
+        )
+
         free = Unknown("displacement", self.name)
         guide, block = (angle_of(name).plus(end_angle(end)) for name, end in zip(self.members, ends, strict=True))
         arm, tied = Vector("", Sum(0.0, ((1.0, free),)), guide), Auxiliary(self.name, difference(guide, block))

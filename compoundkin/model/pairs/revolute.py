@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -16,8 +16,10 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.model.geometry import Geometry
 from compoundkin.model.pairs.contact import FrictionPin
 from compoundkin.model.pairs.contract import Drivable, Ends, Point, Poses, jacobian_of_rows
-from compoundkin.model.pairs.loop_terms import LoopTerms
 from compoundkin.model.pairs.symbols import Mark, Pin
+
+if TYPE_CHECKING:
+    from compoundkin.model.pairs.loop_terms import LoopTerms
 
 # At a multiple pin the first that occurs in no name of its links joins two of them, so that pair names are unique.
 SEPARATORS = ("-", "/", ":", " to ", " - ")
@@ -93,6 +95,8 @@ class Revolute(FrictionPin, Drivable):
 
     def loop_terms(self, ends: Ends) -> LoopTerms:
         """Return the pin, through which a loop passes."""
+        from compoundkin.model.pairs.loop_terms import LoopTerms
+
         return LoopTerms((ends[0].point, ends[1].point), (self.at, self.at))
 
     def placed(self, ends: Ends, free: Series) -> Pose:

@@ -1,24 +1,17 @@
 """Profiles of cams and curved slots as they are written.
 
-Coordinates are those of the link that carries the profile. What they have in common is their `curve`.
+Coordinates are those of the link that carries the profile. What they have in common is their `curve`. They are imported
+from their files.
 """
 
-from compoundkin.model.profiles.double_cams import DoubleCam, conjugate, constant_breadth
-from compoundkin.model.profiles.profile import (
-    DiscProfile,
-    FormulaProfile,
-    PointsProfile,
-    Profile,
-    disc,
-    formula,
-    profile,
-)
-from compoundkin.model.profiles.synthesised import Synthesised, synthesise
+from __future__ import annotations
 
-KINDS: tuple[type[Profile], ...] = (DiscProfile, PointsProfile, FormulaProfile, Synthesised)
+from compoundkin.model.fields import LateKinds
+from compoundkin.model.profiles.profile import Profile
+
 # Those that a mechanism file can hold, by their name there.
-WRITTEN: dict[str, type[Profile]] = {kind.kind: kind for kind in KINDS if kind.keys}
-__all__ = [
-    "KINDS", "WRITTEN", "DiscProfile", "DoubleCam", "FormulaProfile", "PointsProfile", "Profile", "Synthesised",
-    "conjugate", "constant_breadth", "disc", "formula", "profile", "synthesise",
-]  # fmt: skip
+WRITTEN = LateKinds[type[Profile]](
+    __name__,
+    {"disc": "profile.DiscProfile", "points": "profile.PointsProfile", "made": "synthesised.Synthesised"},
+)
+__all__ = ["WRITTEN", "Profile"]

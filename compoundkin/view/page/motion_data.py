@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from compoundkin.analysis.centres import Centres, instant_centres
 from compoundkin.base.arrays import Number, ascending, degrees
-from compoundkin.dynamics.force_analysis import loaded_forces
-from compoundkin.dynamics.forces import Forces
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between
 from compoundkin.kinematics.extremes.motion_between import inputs_between
@@ -28,20 +26,14 @@ from compoundkin.model.attributes import (
     unit_of,
 )
 from compoundkin.view.page.live.live_sketch import live_sketch
-from compoundkin.view.page.live.recorded_forces import DrawnForces
 from compoundkin.view.page.markup import component_values, packed_doubles, packed_floats
 from compoundkin.view.report.pose_sample import Sample
-from compoundkin.view.sketch import force_arrows
 from compoundkin.view.sketch.centre_pictures import centre_number
-from compoundkin.view.sketch.force_arrows import (
-    KINDS,
-    ForceCourse,
-    drawn_force_courses,
-    drawn_moment_courses,
-    force_scales,
-)
 from compoundkin.view.sketch.kinematic_sketch import MovingSketch, moving_sketch
 from compoundkin.view.sketch.vectors import KINDS_OF_VECTOR, SHORTEST
+
+if TYPE_CHECKING:
+    from compoundkin.view.page.force_data import DrawnForces
 
 # A page holds so many poses at most, fewer where there are many links: its data shall stay well below a megabyte.
 MOST_POSES, FEWEST_POSES = 721, 121
@@ -52,8 +44,6 @@ OF_A_LINK = 9
 MOST_LINKS = 12
 # How long a motion takes to play, in seconds: one that is not in time; one in time at least and at most.
 CYCLE, QUICKEST, SLOWEST = 4.0, 1.0, 30.0
-# A place that moves on its link by less than this part of the size is fixed there.
-FIXED_PLACE = 1e-9
 # Plots that a page makes by itself go to accelerations.
 ORDERS = range(3)
 
@@ -141,24 +131,24 @@ class MotionData:
         }
 
     @cached_property
-    def forces(self) -> Forces | None:
-        """The forces of the motion, where it has loads."""
-        return loaded_forces(self.motion) if self.with_centres else None
-
-    @cached_property
     def drawn_forces(self) -> DrawnForces | None:
         """The forces that are drawn, None where nothing acts."""
-        if self.forces is None:
+        if not (self.with_centres and self.motion.mechanism.has_loads):
             return None
-        arrows, arcs = (drawn(self.forces, self.sketch.scene, self.sketch.design)
-                        for drawn in (drawn_force_courses, drawn_moment_courses))  # fmt: skip
-        return DrawnForces(self.forces, arrows, arcs) if arrows or arcs else None
+        from compoundkin.view.page.force_data import drawn_forces
+
+        return drawn_forces(self.motion, self.sketch)
 
     def _overlays(self) -> dict[str, Any]:
         """Return the vectors, instant centres and forces that the sketch can show."""
-        drawn = self.drawn_forces
-        found = {} if drawn is None else force_data(self.sketch, drawn, self._numbers, self.chosen)
-        return {"vectors": dict(self._vectors()), **self._centres(), **({"forces": found} if found else {})}
+        return {"vectors": dict(self._vectors()), **self._centres(), **self._forces()}
+
+    def _forces(self) -> dict[str, Any]:
+        if self.drawn_forces is None:
+            return {}
+        from compoundkin.view.page.force_data import force_data
+
+        return {"forces": force_data(self.sketch, self.drawn_forces, self._numbers, self.chosen)}
 
     @property
     def _seconds(self) -> float:
@@ -265,56 +255,6 @@ def _lines(centres: Centres, index: Mapping[tuple[str, ...], int]) -> Iterator[l
             known = [names[text] for text in line if text in names]
             if known:
                 yield [index[tuple(sorted(step.centre))], *known]
-
-
-def force_data(sketch: MovingSketch, drawn: DrawnForces, links: Mapping[str, int], chosen: Number) -> dict[str, Any]:
-    """Return the arrows of forces and the arcs of moments at some poses, each with place, kind, name and text.
-
-    Arrows are to one scale, arcs to none.
-    """
-    forces, courses, turning = drawn
-    scales = force_scales(forces, sketch.window.diagonal, courses)
-    kinds = dict.fromkeys((*(scale.kind for scale in scales), *(one.shown.kind for one in turning)))
-    arrows, arcs = ([_placed_course(forces, one, links, chosen, sketch.design) for one in found]
-                    for found in (courses, turning))  # fmt: skip
-    for one, data in zip(courses, arrows, strict=True):
-        force = one.force[chosen]
-        data |= {"name": one.shown.name, "force": [packed_floats(force.real), packed_floats(force.imag)]}
-    for one, data in zip(turning, arcs, strict=True):
-        data |= {"name": one.shown.turning, "moment": packed_floats(one.moment[chosen])}
-        ends = [[at.real, at.imag] for at in sketch.scene.points[one.shown.link].values()]
-        data |= {"body": links[one.shown.link], "ends": ends, "driver": one.shown.is_driver}
-    per_unit, amount, text = (scales[0].per_unit, scales[0].amount, scales[0].text) if scales else (0.0, 0.0, "")
-    return {
-        "scale": per_unit,
-        "text": text,
-        "length": amount * per_unit,
-        "shortest": force_arrows.SHORTEST,
-        "unit": forces.units.force,
-        "turning": forces.units.moment,
-        "kinds": {kind: KINDS[kind] for kind in kinds},
-        "arrows": arrows,
-        "moments": arcs,
-    }
-
-
-def _placed_course(
-    forces: Forces, course: ForceCourse, links: Mapping[str, int], chosen: Number, design: int
-) -> dict[str, Any]:
-    """Return what acts somewhere: at a point of its link where it is fixed there, else at a place for every pose."""
-    link, shown = forces.links[course.shown.link], course.shown
-
-    def row(values: Any) -> Number:
-        rows = np.broadcast_to(values, forces.shape).reshape(forces.inputs.designs, -1)
-        return np.asarray(rows[design])
-
-    own = (course.at - row(link.origin.position)) * np.exp(-1j * row(link.angle))
-    known = own[np.isfinite(own)]
-    found = {"told": shown.description, "kind": shown.kind}
-    if len(known) and np.max(np.abs(known - known[0])) <= FIXED_PLACE * forces.motion.size:
-        return {**found, "link": links[shown.link], "x": float(known[0].real), "y": float(known[0].imag)}
-    at = course.at[chosen]
-    return {**found, "at": [packed_floats(at.real), packed_floats(at.imag)]}
 
 
 def plot_data(moving: MotionData) -> dict[str, Any]:

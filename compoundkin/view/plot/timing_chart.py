@@ -22,7 +22,7 @@ from compoundkin.model.laws.law_numbers import derivative_jumps
 from compoundkin.model.laws.motion_programs import Program, turn_problems
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.profile_contact import as_profile_contact
-from compoundkin.model.profiles import Synthesised
+from compoundkin.model.profiles.synthesised import Synthesised
 from compoundkin.view.plot import canvas, plot_style
 from compoundkin.view.plot.canvas import value_text
 from compoundkin.view.plot.plot_style import GREY, INK, SHADE, SMALL_PRINT, Plot

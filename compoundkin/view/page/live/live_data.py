@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import comb
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,7 +19,6 @@ from compoundkin.analysis.characteristics.transmission import coriolis_names, in
 from compoundkin.base.arrays import Number, unwrapped
 from compoundkin.base.curves import Curve
 from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
-from compoundkin.dynamics.reactions.force_figures import frame_point
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.one_design import motion_of_design
 from compoundkin.kinematics.quantities import quantity
@@ -41,9 +40,12 @@ from compoundkin.programs.recording.seeded_order import whole_curve
 from compoundkin.programs.solved_designs import seed_values
 from compoundkin.view.page.live.compact_data import table_data
 from compoundkin.view.page.live.panel_data import panel_data, template_data
-from compoundkin.view.page.live.recorded_forces import DrawnForces, RecordedForces, figure_names, why_not_recorded
 from compoundkin.view.page.markup import packed_doubles
 from compoundkin.view.report.pose_sample import Sample
+
+if TYPE_CHECKING:
+    from compoundkin.view.page.force_data import DrawnForces
+    from compoundkin.view.page.live.recorded_forces import RecordedForces
 
 # In parts of the largest value: what is packed with seven digits agrees.
 AGREES = 1e-9
@@ -83,9 +85,13 @@ class LiveData:
     @cached_property
     def forces(self) -> RecordedForces | None:
         """The forces as the program has them; None where it cannot, or does not reproduce what is drawn."""
-        if self.drawn is None or why_not_recorded(self.drawn):
+        if self.drawn is None:
             return None
-        names = figure_names(self.drawn.forces, self.names, frame_point(self.drawn.forces))
+        from compoundkin.view.page.live.recorded_forces import RecordedForces, figure_names, why_not_recorded
+
+        if why_not_recorded(self.drawn):
+            return None
+        names = figure_names(self.drawn.forces, self.names)
         try:
             found = RecordedForces.of(self._without_forces, self.drawn, self.motion, names)
         except CompoundkinError:
@@ -143,6 +149,8 @@ class LiveData:
             return {}
         if self.forces is not None:
             return {"forces": self.forces.data(self.places, self.chosen)}
+        from compoundkin.view.page.live.recorded_forces import why_not_recorded
+
         why = why_not_recorded(self.drawn) or "a load is not a number of one pose"
         return {"noForces": why}
 

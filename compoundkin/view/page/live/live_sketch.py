@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,7 +27,6 @@ from compoundkin.programs.recording.recorded_mechanism import recorded_ends, rec
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.view.page.live.compact_data import table_data
 from compoundkin.view.page.live.live_data import live_data
-from compoundkin.view.page.live.recorded_forces import DrawnForces
 from compoundkin.view.report.pose_sample import Sample
 from compoundkin.view.sketch.kinematic_sketch import MovingPart, MovingSketch, carried_parts, carried_shapes
 from compoundkin.view.sketch.painter import ON_LINE, SAME, Painter
@@ -44,6 +43,9 @@ from compoundkin.view.sketch.shapes import (
     unit_direction,
 )
 from compoundkin.view.sketch.traced_numbers import LEAST, Traced, traced, untraced
+
+if TYPE_CHECKING:
+    from compoundkin.view.page.force_data import DrawnForces
 
 # How a page draws a shape; its numbers follow in the order of `_kind`.
 LINES, OUTLINE, ROW, ROUND, BOW = "lines", "outline", "row", "round", "bow"

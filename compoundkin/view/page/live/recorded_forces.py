@@ -23,7 +23,7 @@ from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.force_result import ForceResult
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.loaded_block import LoadedBlock
-from compoundkin.dynamics.reactions.force_figures import ABOUT, force_figure, shaking_moment
+from compoundkin.dynamics.reactions.force_figures import ABOUT, force_figure, frame_point, shaking_moment
 from compoundkin.dynamics.reactions.link_wrench import DRIVER, INERTIA, PAIR, WEIGHT
 from compoundkin.dynamics.reactions.pair_forces import ForceComponents, force_component
 from compoundkin.dynamics.reactions.reverse_pass import Reactions, all_reactions
@@ -52,8 +52,9 @@ from compoundkin.programs.page_program import PageProgram
 from compoundkin.programs.recording.recorded_motion import RecordedMotion
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 from compoundkin.structure.mobility_count import DrivenPair
+from compoundkin.view.page.force_data import DrawnForces
 from compoundkin.view.page.markup import packed_doubles
-from compoundkin.view.sketch.force_arrows import ForceCourse, described_wrench
+from compoundkin.view.sketch.force_arrows import described_wrench
 
 # In parts of the largest value of a kind: the program and the analysis agree.
 AGREES = 1e-9
@@ -63,14 +64,6 @@ OF_SIZE_ONE = tuple(word for word, one in ({**FORCES["pairs"], **FORCES["links"]
 GIVEN = "load"
 # A uniform plate of so many corners has no other ones, whatever its dimensions are.
 CORNERS = 3
-
-
-class DrawnForces(NamedTuple):
-    """Forces with the courses that are drawn: as arrows, and as arcs."""
-
-    forces: Forces
-    arrows: tuple[ForceCourse, ...]
-    arcs: tuple[ForceCourse, ...]
 
 
 def why_not_recorded(drawn: DrawnForces) -> str:
@@ -415,16 +408,13 @@ class RecordedAnalysis:
         return PARTS[part](values) if part else values
 
 
-def figure_names(forces: Forces, outputs: Sequence[str], letter: str) -> tuple[str, ...]:
-    """Return the quantities of forces of a page: its outputs, and those of the report's tables.
-
-    The shaking moment is that about the point `letter` of the frame.
-    """
+def figure_names(forces: Forces, outputs: Sequence[str]) -> tuple[str, ...]:
+    """Return the quantities of forces of a page: its outputs, and those of the report's tables."""
     motion = forces.motion
     told = [name for name in outputs if _is_of_forces(motion, name)]
     pairs = [f"{name}.{word}" for name in forces.wrenches for word in (FORCE, MOMENT)]
     drives = [f"{name}.{word}" for name in forces.drives for word in (EFFORT, POWER)]
-    shaking = [f"{FRAME}.{SHAKING_FORCE}", shaking_moment(letter)]
+    shaking = [f"{FRAME}.{SHAKING_FORCE}", shaking_moment(frame_point(forces))]
     return tuple(dict.fromkeys((*told, *pairs, *drives, *shaking)))
 
 
