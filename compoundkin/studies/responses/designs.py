@@ -18,7 +18,7 @@ from compoundkin.kinematics.extremes.motion_between import inputs_between, inter
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.attributes import RADIANS, RATES, TIME
-from compoundkin.programs.call_numbers import Call, CallNumbers, numbers_of_designs
+from compoundkin.programs.call_numbers import Call, CallNumbers
 from compoundkin.programs.compiled_path import CompiledPath
 from compoundkin.programs.derivatives.path_objective import PathObjective
 from compoundkin.programs.derivatives.path_sensitivities import PathSensitivities
@@ -209,7 +209,7 @@ class Designs(ShortRepr):
         """Return the numbers of some at places: those of all of them, with other drivers."""
         programs = self.path.compiled.programs
         is_solved = bool(programs.law_numbers or programs.variant(frozenset()).seeds)
-        is_common = self.times is not None or are_rows(self.inputs)
+        is_common = self.times is not None or self.computed_once(are_rows, lambda: are_rows(self.inputs))
         if index is not None and (is_solved or not is_common):
             places, index = places.take(index, axis=0), None
         if is_solved:
@@ -217,8 +217,8 @@ class Designs(ShortRepr):
         # where drivers move in the same way in all designs they are needed once for each row of the table
         inputs, _ = self._inputs_between(rows, places)
         own = {one: value for one, value in self.numbers.given.items() if one.kind != DRIVE}
-        found = numbers_of_designs(replace(self.numbers, given=own), rows)
-        given, still = dict(found.given), set()
+        given = {one: value.take(rows, axis=0) if len(value) > 1 else value for one, value in own.items()}
+        still = set()
         for name, rates in inputs.drives.items():
             for k, rate in enumerate(rates):
                 value = np.atleast_2d(np.asarray(rate, float))
