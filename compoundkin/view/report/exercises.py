@@ -39,6 +39,7 @@ from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.programs.dimensions import StatedDimensions, free_dimensions, mechanism_with
 from compoundkin.structure import Structure, roman
+from compoundkin.structure.decomposition import decompose_near_drawing
 from compoundkin.view.report.centres_section import centres_sections
 from compoundkin.view.report.equations_sections import constants_section, equations_section, pose_section, rates_section
 from compoundkin.view.report.groups_section import solving_section
@@ -331,7 +332,11 @@ class _Template:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
-                motion = solve(self.changed(values))
+                # near the drawing: what is overconstrained and no longer fits is not searched for from afar
+                structure = decompose_near_drawing(self.changed(values))
+                if any(fault.kind == "over" for fault in structure.faults):
+                    return None
+                motion = solve(structure)
         except CompoundkinError:
             return None
         enough = np.mean(motion.assembled) >= share if self.is_whole else motion.assembled.any()
@@ -359,17 +364,19 @@ def _variant(template: _Template, seed: int, number: int, kinds: Sequence[str]) 
         factors = 1.0 + template.vary * rng.uniform(-1.0, 1.0, len(template.varied))
         values = {n: printed(v * f) for own, f in zip(template.varied, factors, strict=True) for n, v in own.items()}
         share = 1.0 if trial < WHOLE_TRIALS else template.least_share
-        cycle = template.solved(values, share) if values else template.motion
         place, pace = rng.uniform(), rng.uniform(-1.0, 1.0)
-        if cycle is None:
-            reason = "it does not assemble wherever the given one does"
-            continue
-        mechanism = template.changed(values) if values else template.mechanism
-        motion = _at_pose(mechanism, cycle, place, pace, template.vary)
+        # where all of the cycle has to assemble the pose is known without it, and takes a fraction of its time
+        is_known = not values or (template.is_whole and share == 1.0)
+        cycle = template.motion if is_known else template.solved(values, share)
+        mechanism = template.changed(values) if values and cycle is not None else template.mechanism
+        motion = None if cycle is None else _at_pose(mechanism, cycle, place, pace, template.vary)
         # an overconstrained mechanism keeps its special dimensions, and its special positions with them
         reason = "" if motion is None else _special(motion, strict=trial < TRIALS // 2)
-        if motion is not None and not reason:
+        if motion is None or reason:
+            continue
+        if not (values and is_known) or template.solved(values, share) is not None:
             return _exercise(number, mechanism, motion, template, kinds)
+        reason = "it does not assemble wherever the given one does"
     what = f"no variant {number} was found among {TRIALS}: {reason or 'its poses do not assemble'}"
     raise InvalidInput(Problem("vary", what, "vary less, or take another seed"))
 
