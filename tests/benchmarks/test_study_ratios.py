@@ -29,7 +29,7 @@ def test_sums() -> None:
 
 
 def test_figures() -> None:
-    assert min(studies.figures()["figures"]) / studies.SOME * 1e6 < 60.0
+    assert min(studies.figures()["figures"]) / studies.SOME * 1e6 < 6.0 * NOISE
 
 
 def test_memory() -> None:
