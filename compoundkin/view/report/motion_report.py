@@ -10,6 +10,7 @@ from compoundkin.analysis.characteristics.outputs import chosen_outputs
 from compoundkin.analysis.checks import Check, verify
 from compoundkin.analysis.singularities import singular_poses
 from compoundkin.base.arguments import check_design
+from compoundkin.base.buffers import without_collection
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.one_design import motion_of_design
 from compoundkin.view.report.centres_section import centres_sections
@@ -56,6 +57,7 @@ def checks_section(sample: Sample, check: Check) -> Section:
     return Section("checks", "Checks", (Paragraph(text), checks_table(sample.motion, check)))
 
 
+@without_collection()
 def report_of_motion(motion: Motion, outputs: Sequence[str] = (), note: str = "") -> Report:
     """Report a motion of one design; `note` says which of several designs it is."""
     sample, structure, outputs = Sample(motion), motion.structure, tuple(outputs)

@@ -25,7 +25,6 @@ from compoundkin.view.sketch.painter import (
     joints,
     rod_line,
     skeleton,
-    visible_points,
 )
 from compoundkin.view.sketch.scene import Scene, Window
 from compoundkin.view.sketch.shapes import (
@@ -110,7 +109,7 @@ def labels_of(
 def point_letters(painter: Painter) -> list[Label]:
     """Return a label for every point, away from the middle of the mechanism."""
     found = []
-    for letter, at in visible_points(painter.scene, painter.window).items():
+    for letter, at in painter.points.items():
         if not any(map(painter.shows, painter.scene.mechanism.carriers[letter])):
             continue
         away = at - painter.middle
@@ -447,9 +446,10 @@ def arranged_labels(labels: Sequence[Label], fixed: Mapping[str, Number], crowd:
     found: dict[str, complex] = {}
     for _ in range(1 + ROUNDS):
         for k, label in enumerate(labels):
-            costs = fixed[label.key] + crowd.costs(k, label)
-            found[label.key] = label.places[int(np.argmin(np.round(costs, DIGITS)))]
-            crowd.put(k, found[label.key])
+            if crowd.is_new_for(k):
+                costs = fixed[label.key] + crowd.costs(k, label)
+                found[label.key] = label.places[int(np.argmin(np.round(costs, DIGITS)))]
+                crowd.put(k, found[label.key])
     return found
 
 
@@ -464,14 +464,46 @@ class LabelCrowd:
         self._half = np.array([label.half for label in labels])
         # what is nowhere yet is near nothing
         self._middles: Number = np.full(turn.shape, complex(np.nan, np.nan))
+        self._neighbours = self._that_may_meet([self._moved(k, label) for k, label in enumerate(labels)])
+        self._is_new = np.ones(len(labels), dtype=bool)
+
+    def _moved(self, k: int, label: Label) -> Number:
+        """Return the places of a label at the poses, (poses, places)."""
+        moved: Number = np.array(label.places) * self._turn[:, k, None] + self._shift[:, k, None]
+        return moved
+
+    def _that_may_meet(self, moved: Sequence[Number]) -> list[Number]:
+        """Return for each label the indices of the others that it may ever be on: of all else nothing is counted."""
+        nothing: Number = np.zeros((len(self._turn), 0))
+        least_x, most_x, least_y, most_y = (
+            np.column_stack([nothing, *(extreme(part(one), axis=1) for one in moved)])
+            for part in (np.real, np.imag) for extreme in (np.min, np.max)
+        )  # fmt: skip
+        found = []
+        for k, half in enumerate(self._half):
+            reach = half + self._half + (ROOM + TOUCHING) * (1 + 1j)
+            wide = (least_x - most_x[:, k, None] < reach.real) & (least_x[:, k, None] - most_x < reach.real)
+            high = (least_y - most_y[:, k, None] < reach.imag) & (least_y[:, k, None] - most_y < reach.imag)
+            meets = (wide & high).any(axis=0)
+            meets[k] = False
+            found.append(np.flatnonzero(meets))
+        return found
+
+    def is_new_for(self, k: int) -> bool:
+        """Return whether any that a label may be on was put elsewhere since it was put."""
+        return bool(self._is_new[k])
 
     def put(self, k: int, place: complex) -> None:
         """Put a label at a place."""
-        self._middles[:, k] = place * self._turn[:, k] + self._shift[:, k]
+        at = place * self._turn[:, k] + self._shift[:, k]
+        self._is_new[k] = False
+        if not np.array_equal(at, self._middles[:, k]):
+            self._middles[:, k] = at
+            self._is_new[self._neighbours[k]] = True
 
     def costs(self, k: int, label: Label) -> Number:
         """Return what each place of a label costs, on the average of the poses."""
-        places = np.array(label.places) * self._turn[:, k, None] + self._shift[:, k, None]
+        places = self._moved(k, label)
         near = self._near(k, places)
         gap = places - self._middles[:, near].T[:, :, None]
         found: Number = crowded(gap, label.half, self._half[near][:, None, None]).sum(axis=0).mean(axis=0)
@@ -479,17 +511,17 @@ class LabelCrowd:
 
     def _near(self, k: int, places: Number) -> Number:
         """Indices of the others that any of the places is near at any pose: of all else nothing is counted."""
-        reach = self._half[k] + self._half + ROOM * (1 + 1j)
-        x, y, at = places.real, places.imag, self._middles
+        others = self._neighbours[k]
+        reach = self._half[k] + self._half[others] + ROOM * (1 + 1j)
+        x, y, at = places.real, places.imag, self._middles[:, others]
         wide = (at.real - x.max(axis=1, keepdims=True) < reach.real) & (
             x.min(axis=1, keepdims=True) - at.real < reach.real
         )
         high = (at.imag - y.max(axis=1, keepdims=True) < reach.imag) & (
             y.min(axis=1, keepdims=True) - at.imag < reach.imag
         )
-        near = (wide & high).any(axis=0)
-        near[k] = False
-        return np.flatnonzero(near)
+        near: Number = others[(wide & high).any(axis=0)]
+        return near
 
 
 def beyond(at: Number, half: complex, width: float, height: float) -> Number:

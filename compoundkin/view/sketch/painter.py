@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
@@ -71,6 +71,12 @@ class Painter:
     window: Window
     only: frozenset[str] | None = None
     outer: frozenset[str] = frozenset()  # the letters of the pairs by which those are attached
+    whole: Painter | None = None  # that of all links, where some of them are drawn apart
+
+    @cached_property
+    def points(self) -> Mapping[str, complex]:
+        """The places on the picture of all points that are shown."""
+        return visible_points(self.scene, self.window) if self.whole is None else self.whole.points
 
     def shows(self, link: str) -> bool:
         """Return whether a link is drawn."""
@@ -336,7 +342,7 @@ def edges(corners: Places) -> list[tuple[complex, complex]]:
 def pin_shapes(painter: Painter) -> Iterator[Laid]:
     """Draw open circles for pins; dots for other points. A second circle is around those of more than two links."""
     scene = painter.scene
-    for letter, at in visible_points(painter.scene, painter.window).items():
+    for letter, at in painter.points.items():
         carriers = [link for link in scene.mechanism.carriers[letter] if painter.shows(link)]
         if not carriers:
             continue

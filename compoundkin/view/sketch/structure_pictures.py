@@ -115,12 +115,10 @@ def groups_picture(scene: Scene, size: float | None) -> Picture:
     share = float(np.clip(HALF_ROW / max(first.width, first.height), PART_OF_SKETCH, larger))
     whole = Window(first.scale * share, first.corner, first.width * share, first.height * share)
     ground = frozenset((FRAME, *scene.structure.ground.links))
-    parts = [
-        _mechanism_part(scene, whole, ground, "frame and driver" if len(scene.driven) == 1 else "frame and drivers")
-    ]
+    painter = Painter(scene, whole)
+    parts = [_mechanism_part(painter, ground, "frame and driver" if len(scene.driven) == 1 else "frame and drivers")]
     parts += [
-        _mechanism_part(scene, whole, frozenset(g.links), group_heading(g), outer_letters(g))
-        for g in scene.structure.groups
+        _mechanism_part(painter, frozenset(g.links), group_heading(g), outer_letters(g)) for g in scene.structure.groups
     ]
     shapes, width, height = in_rows(parts, "+", PAPER_WIDTH)
     notes = [f"{number} {name}" for name, number in scene.legend.items()]
@@ -141,10 +139,10 @@ def outer_letters(group: Group) -> frozenset[str]:
 
 
 def _mechanism_part(
-    scene: Scene, whole: Window, links: frozenset[str], title: str, outer: frozenset[str] = frozenset()
+    whole: Painter, links: frozenset[str], title: str, outer: frozenset[str] = frozenset()
 ) -> PicturePart:
     """The links of a part as they are in the mechanism, with their letters and numbers."""
-    painter = Painter(scene, whole, links, outer)
+    painter, scene = Painter(whole.scene, whole.window, links, outer, whole), whole.scene
     laid = in_layers(painter)
     shapes = by_links(laid)
     low, wide, tall = panel_around(shape_corners(shapes) or [0j], len(title) * LETTER * WIDE, AROUND_PART)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.view.sketch.kinematic_sketch import in_layers, moving_sketch
-from compoundkin.view.sketch.labels import WIDE, text_half
+from compoundkin.view.sketch.labels import WIDE, Label, LabelCrowd, arranged_labels, text_half
 from compoundkin.view.sketch.painter import Layer, Painter
 from compoundkin.view.sketch.picture_options import scene_of
 from compoundkin.view.sketch.shapes import CircleShape, Polyline, ShapeGroup, Text, leaves
@@ -214,3 +215,33 @@ def test_plates_have_two_sides_and_an_angle() -> None:
     texts = {shape.text for shape in numbers(ck.draw(mechanism("six-bar"), dimensions=True))}
     assert {f"{abs(a - d):.4g} mm", f"{abs(c - d):.4g} mm"} <= texts
     assert f"{abs(np.rad2deg(np.angle((c - d) / (a - d)))):.4g}°" in texts
+
+
+class PlacedAgain(LabelCrowd):
+    """Labels of which each is placed again in every round, and held against all others."""
+
+    def is_new_for(self, k: int) -> bool:
+        return True
+
+    def _that_may_meet(self, moved: Sequence[np.ndarray]) -> list[np.ndarray]:
+        return [np.delete(np.arange(len(moved)), k) for k in range(len(moved))]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_labels_are_where_they_are_if_each_is_placed_again(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+
+    def some(*shape: int) -> np.ndarray:
+        return rng.uniform(-90.0, 90.0, shape) + 1j * rng.uniform(-90.0, 90.0, shape)
+
+    labels = [
+        Label(
+            f"point {k}", complex(*rng.uniform(4.0, 14.0, 2)), tuple(some() + 30.0 * some(9) / 90.0), tuple(9 * [0.0])
+        )
+        for k in range(40)
+    ]
+    fixed = {label.key: rng.uniform(0.0, 20.0, 9) for label in labels}
+    turn, shift = np.exp(1j * rng.uniform(-0.2, 0.2, (5, 40))), some(5, 40) / 9.0
+    found = arranged_labels(labels, fixed, LabelCrowd(labels, turn, shift))
+    assert found == arranged_labels(labels, fixed, PlacedAgain(labels, turn, shift))
+    assert len({label.places.index(found[label.key]) for label in labels}) > 5
