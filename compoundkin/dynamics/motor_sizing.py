@@ -28,8 +28,8 @@ from compoundkin.model.units import FORCES, LENGTHS
 RPM = 2.0 * pi / 60.0
 # An effort below this part of what it is the sum of is rounding.
 ROUNDING = 1e-12
-# Gears tried for the least effective torque: so many, over so many powers of ten to either side.
-TRIED, DECADES = 400, 3.0
+# No gear is taken below this part of the greatest.
+LEAST_GEAR = 1e-3
 
 
 @dataclass(frozen=True)
@@ -398,21 +398,17 @@ def _at_shaft(needed: Sizing, inertia: float, gear: float) -> tuple[Number, Numb
 
 
 def best_gear(needed: Sizing, motor: ListedMotor) -> float:
-    """Return the gear of the least effective torque at the shaft of a motor that keeps within its rated speed."""
-    most = motor.rated_speed / needed.speed
-    tried = most * np.logspace(-DECADES, 0.0, TRIED)
-    found = [_rms(_at_shaft(needed, motor.inertia, float(gear))[0], needed.times) for gear in tried]
-    k = int(np.argmin(found))
-    low, high = tried[max(k - 1, 0)], tried[min(k + 1, TRIED - 1)]
-    from scipy.optimize import minimize_scalar
+    """Return the gear of the least effective torque at the shaft of a motor that keeps within its rated speed.
 
-    if k == TRIED - 1:
+    The load's part of the torque falls with the gear, that of the rotor grows with it, so that the mean square is a sum
+    of its square, of the square of its reciprocal, and of a constant: it is least where both parts are equal.
+    """
+    most = motor.rated_speed / needed.speed
+    load = _rms(_at_shaft(needed, 0.0, 1.0)[0], needed.times)
+    rotor = motor.inertia * _rms(needed.accelerations, needed.times)
+    if rotor == 0.0:
         return float(most)
-    better = minimize_scalar(
-        lambda gear: _rms(_at_shaft(needed, motor.inertia, float(gear))[0], needed.times), bounds=(low, high),
-        method="bounded", options={"xatol": 1e-9 * most},
-    )  # fmt: skip
-    return float(better.x)
+    return float(np.clip(np.sqrt(load / rotor), LEAST_GEAR * most, most))
 
 
 def _sized(needed: Sizing, motor: ListedMotor, gear: float | None) -> SizedMotor:
