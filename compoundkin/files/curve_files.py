@@ -97,7 +97,7 @@ def _text(content: bytes, where: str) -> str:
         raise unreadable(where, f"it is not UTF-8 text (byte {error.start})", "save it as UTF-8") from None
 
 
-class _Table(NamedTuple):
+class _PointTable(NamedTuple):
     """The headings of a table, none where there are no words; its rows that have a place, and these places (n,)."""
 
     headings: list[str]
@@ -109,7 +109,7 @@ def _of_table(content: bytes, where: str) -> list[Number]:
     return [_table(content, where).places]
 
 
-def _table(content: bytes, where: str) -> _Table:
+def _table(content: bytes, where: str) -> _PointTable:
     rows = _rows(_lines(content, where))
     columns, first = _columns(rows, where)
     known, places = list[list[str]](), list[complex]()
@@ -123,7 +123,7 @@ def _table(content: bytes, where: str) -> _Table:
         known.append(row)
         places.append(complex(x, y))
     has_headings = 0 < first <= len(rows) and {"x", "y"} <= set(_words(rows[first - 1]))
-    return _Table(rows[first - 1] if has_headings else [], known, np.array(places, complex))
+    return _PointTable(rows[first - 1] if has_headings else [], known, np.array(places, complex))
 
 
 def _lines(content: bytes, where: str) -> list[str]:

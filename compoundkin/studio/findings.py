@@ -28,8 +28,10 @@ from compoundkin.model.attributes import DEGREE_SIGN, EFFORT, FORCE, TABULATED, 
 from compoundkin.model.definition import CYLINDERS
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.mechanism import Mechanism
+from compoundkin.model.pairs import WRITTEN
 from compoundkin.structure import Structure
 from compoundkin.studio.edited_document import called, written_place
+from compoundkin.studio.wheels import stated_numbers
 
 if TYPE_CHECKING:
     from compoundkin.programs.dimensions import FreeDimension
@@ -39,8 +41,6 @@ Reply: TypeAlias = dict[str, Any]
 
 # So many configurations have a picture; of more links than these instant centres are not shown.
 MOST_PICTURES, MOST_CENTRES = 24, 12
-# The radii of profiles, by their keys in the text.
-PROFILES = {"radius": "radius of the disc", "base": "base circle"}
 # So many branches of circuits can be clicked.
 MOST_BRANCHES = 64
 # So many plots are drawn at once.
@@ -99,25 +99,15 @@ def dimensions(shown: DrivenStructure, question: Mapping[str, Any]) -> Reply:
 
 
 def _counts(mechanism: Mechanism) -> Iterator[Reply]:
-    """Yield numbers of gears and cams that no program has, and that the text has: teeth, the radii of profiles."""
+    """Yield the numbers of pairs that no program has and the text has: teeth, the radii of profiles."""
     from compoundkin.files.writer import document
 
     for array, tables in document(mechanism).items():
-        for table in tables if array in ("gears", "cams") else ():
-            name, teeth, profile = called(table, array), table.get("teeth"), table.get("profile")
-            links = table.get("first"), table.get("second")
-            for k, count in enumerate(teeth if isinstance(teeth, list) else ()):
-                told = f"teeth of {links[k]}"
-                yield {"pair": name, "entry": ["teeth", k], "told": told, "value": count, "is_whole": True}
-            for key, told in PROFILES.items():
-                if isinstance(profile, dict) and isinstance(profile.get(key), int | float):
-                    yield {
-                        "pair": name,
-                        "entry": ["profile", key],
-                        "told": told,
-                        "value": profile[key],
-                        "is_whole": False,
-                    }
+        for table in tables if array in WRITTEN else ():
+            for (key, part), told in stated_numbers(array, table).items():
+                value, is_whole = table[key][part], isinstance(part, int)
+                yield {"pair": called(table, array), "entry": [key, part], "told": told, "value": value,
+                       "is_whole": is_whole}  # fmt: skip
 
 
 def changed_dimensions(

@@ -11,7 +11,9 @@ from math import degrees
 from typing import Any
 
 from compoundkin.base.errors import Problem, UnknownName
+from compoundkin.model.fields import declared_keys
 from compoundkin.model.geometry import FRAME
+from compoundkin.model.pairs import WRITTEN
 from compoundkin.studio.edited_document import (
     DIGITS,
     Edit,
@@ -25,6 +27,9 @@ from compoundkin.studio.edited_document import (
 
 # What is called so where nothing else has the name.
 WHEEL, CAM = "wheel", "cam"
+# The radii of profiles that are changed in the text, and what they are.
+RADII = {"radius": "radius of the disc", "base": "base circle"}
+TEETH = "teeth"
 # A follower of a cam dwells in the turn that its rise and its return leave.
 TURN = 360.0
 
@@ -189,20 +194,32 @@ def _swinging_follower(sheet: EditedDocument, centre: complex, letter: str, foll
     return {"pivot": sheet.pair(to), "arm": sheet.number(abs(arm)), "side": side}
 
 
+def stated_numbers(array: str, table: Mapping[str, Any]) -> dict[tuple[str, int | str], str]:
+    """Return the numbers of a pair's table that are changed in the text, by key and place there: what each is."""
+    found: dict[tuple[str, int | str], str] = {}
+    for key in declared_keys(WRITTEN[array]) if array in WRITTEN else ():
+        value = table.get(key.name)
+        if key.name == TEETH and isinstance(value, list):
+            found |= {(key.name, k): f"teeth of {table.get(end)}" for k, end in enumerate(("first", "second"))}
+        elif key.kind == "profile" and isinstance(value, dict):
+            found |= {(key.name, part): told for part, told in RADII.items()
+                      if isinstance(value.get(part), int | float)}  # fmt: skip
+    return found
+
+
 def stated_number(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
-    """Give a number of a gear or a cam another value, where it is written: teeth, the radius of a profile."""
+    """Give a number of a pair another value, where it is written: teeth, the radius of a profile."""
     name, entry, value = word_in(edit, "pair"), edit.get("entry"), positive_in(edit, "value")
     if not value:
         raise refused("it is no number above 0", "give pair, entry and value")
     if not (isinstance(entry, list) and [type(one) for one in entry] in ([str, int], [str, str])):
         raise refused(f"{entry!r} is no entry of a table", 'give such as ["teeth", 0] or ["profile", "base"]')
+    key, part = entry
     for array, _, table in sheet.tables():
-        holder = table.get(entry[0]) if array in ("gears", "cams") and called(table, array) == name else None
-        is_there = entry[1] in (0, 1) if isinstance(holder, list) else isinstance(holder, dict) and entry[1] in holder
-        if holder is None or not is_there:
+        if (key, part) not in stated_numbers(array, table) or called(table, array) != name:
             continue
-        if isinstance(holder, list) and value % 1:
+        if isinstance(part, int) and value % 1:
             raise refused(f"{value:g} teeth cannot be", "give a whole number")
-        holder[entry[1]] = int(value) if isinstance(holder, list) else sheet.number(value)
+        table[key][part] = int(value) if isinstance(part, int) else sheet.number(value)
         return {"pair": name}
     raise UnknownName(Problem(name, "there is no such number in the text"))

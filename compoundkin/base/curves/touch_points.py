@@ -74,7 +74,7 @@ def foot(curve: SearchableCurve, p: Series, near: Number = None) -> Series:
     def condition(place: Series, along: Series, point: Series) -> Series:
         return (point - place).dot(along)
 
-    return _touch_parameter(curve, p, _Target(curve.size, rise, curve.samples.nearest, slope, condition), near)
+    return _touch_parameter(curve, p, _TouchCondition(curve.size, rise, curve.samples.nearest, slope, condition), near)
 
 
 def farthest(curve: SearchableCurve, n: Series, near: Number = None) -> Series:
@@ -93,11 +93,11 @@ def farthest(curve: SearchableCurve, n: Series, near: Number = None) -> Series:
     def condition(_: Series, along: Series, direction: Series) -> Series:
         return direction.dot(along)
 
-    aim = _Target(np.abs(n.c[0]), rise, curve.samples.outermost, slope, condition)
+    aim = _TouchCondition(np.abs(n.c[0]), rise, curve.samples.outermost, slope, condition)
     return _touch_parameter(curve, n, aim, near)
 
 
-class _Target(NamedTuple):
+class _TouchCondition(NamedTuple):
     """What is sought of a curve.
 
     Its scale; the slope of what is greatest there, with its own, from the curve's derivatives; the best sample of some
@@ -111,7 +111,7 @@ class _Target(NamedTuple):
     condition: Callable[[Series, Series, Series], Series]
 
 
-def _touch_parameter(curve: SearchableCurve, given: Series, aim: _Target, near: Number) -> Series:
+def _touch_parameter(curve: SearchableCurve, given: Series, aim: _TouchCondition, near: Number) -> Series:
     """Find the parameter that belongs to `given`: between the best samples, Newton, then order by order."""
     s = _search(curve, given.c[0], aim) if near is None else _newton_step(curve, given.c[0], aim, near)
     if given.order == 0:
@@ -128,7 +128,7 @@ def _touch_parameter(curve: SearchableCurve, given: Series, aim: _Target, near: 
 REMEMBERED, LARGEST = 8, 65_536
 
 
-def _search(curve: SearchableCurve, given: Number, aim: _Target) -> Number:
+def _search(curve: SearchableCurve, given: Number, aim: _TouchCondition) -> Number:
     """Search the parameter between the samples beside the best one, unless it was found just before."""
     lead = np.asarray(given, dtype=complex)
     if lead.size > LARGEST:
@@ -146,7 +146,7 @@ def _search(curve: SearchableCurve, given: Number, aim: _Target) -> Number:
     return found
 
 
-def _searched(curve: SearchableCurve, lead: Number, aim: _Target) -> Number:
+def _searched(curve: SearchableCurve, lead: Number, aim: _TouchCondition) -> Number:
     flat = lead.ravel()
     known = np.isfinite(flat)
     found = np.full(flat.shape, np.nan)
@@ -171,7 +171,7 @@ def _at_breaks(curve: SearchableCurve, s: Number) -> Number:
     return np.where(here, np.array(curve.breaks)[i], s)
 
 
-def _bounds(curve: SearchableCurve, targets: Number, aim: _Target) -> tuple[Number, Number, Number]:
+def _bounds(curve: SearchableCurve, targets: Number, aim: _TouchCondition) -> tuple[Number, Number, Number]:
     """Return between which parameters to search, and where to begin: where a parabola through the slopes falls."""
     samples, best = curve.samples, aim.best(targets)
     low, middle, high = samples.around(best)
@@ -187,7 +187,7 @@ def _bounds(curve: SearchableCurve, targets: Number, aim: _Target) -> tuple[Numb
     return low, np.where(inside, middle + part * samples.step, middle), high
 
 
-def _newton_step(curve: SearchableCurve, given: Number, aim: _Target, near: Number) -> Number:
+def _newton_step(curve: SearchableCurve, given: Number, aim: _TouchCondition, near: Number) -> Number:
     """Go one step from a parameter nearby; none at an end that holds it."""
     first, slope = aim.rise(curve.derivatives(near, 2), given)
     stays = rests_at_end(curve, near, first / np.abs(curve.expansion(near, 1)[1]) / aim.scale)

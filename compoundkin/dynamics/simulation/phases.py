@@ -307,7 +307,7 @@ def _floating(mechanism: Mechanism, items: Sequence[Item], opened: Pair) -> list
 
 
 @dataclass(frozen=True)
-class _Carried:
+class _FreeLink:
     """A free link, and the poses of the two links that carry it."""
 
     name: str
@@ -320,7 +320,7 @@ def _carriage(
     masses: Sequence[MovingMass],
     floating: Sequence[str],
     poses: Mapping[str, Pose],
-) -> tuple[list[Item], _Carried]:
+) -> tuple[list[Item], _FreeLink]:
     """Return two slides and a pin at the mass centre for a free link, and their drivers: x, y and the angle.
 
     The heaviest of the links is carried.
@@ -349,7 +349,7 @@ def _carriage(
         Drive(upward, upward, across),
         Drive(angle, name, upward),
     ]
-    return more, _Carried(name, carried)
+    return more, _FreeLink(name, carried)
 
 
 # Pairs of which drivers are chosen, at the most, and choices that are tried.

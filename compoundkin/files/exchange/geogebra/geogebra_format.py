@@ -39,7 +39,7 @@ from compoundkin.files.exchange.geogebra.dragged_construction import (
 )
 from compoundkin.files.exchange.geogebra.group_constructions import (
     CONSTRUCTIONS,
-    DyadParts,
+    DyadConstruction,
     add_mounted,
     add_train,
     inside_body,
@@ -167,7 +167,7 @@ def _add_group(placed: PlacedBodies, sides: PairSides, solver: GroupSolver, chos
             placed.join(body, {body.links[0]: InsideBody(PolarSum(), Angle())})
     index = dyad.letters[1]
     mode = chosen.mode(solver.index, index) if dyad.modes == 2 else ""
-    CONSTRUCTIONS[dyad.name](DyadParts(placed, sides, dyad, index, mode))
+    CONSTRUCTIONS[dyad.name](DyadConstruction(placed, sides, dyad, index, mode))
 
 
 # What rounding leaves of values, as a part of their range: one at its end seems beyond it by so much.

@@ -34,7 +34,7 @@ from compoundkin.structure.mobility_count import Body, DrivenPair
 _FLAT = "1E-9"
 
 
-def rrr(dyad: DyadParts) -> None:
+def rrr(dyad: DyadConstruction) -> None:
     """Add a dyad of three pins.
 
     The inner pin is found by the law of cosines, on a side of the way from one outer pin to the other.
@@ -55,7 +55,7 @@ def rrr(dyad: DyadParts) -> None:
         dyad.hold(1, two, dyad.outer[1].way, dyad.angle(1, seen_from(two, pin) + _less(other)))
 
 
-def rrp(dyad: DyadParts) -> None:
+def rrp(dyad: DyadConstruction) -> None:
     """Add a dyad of a rod and a block.
 
     From the foot of the outer pin on the line of the inner one it is half a chord, forward or backward along the guide.
@@ -76,7 +76,7 @@ def rrp(dyad: DyadParts) -> None:
         dyad.hold(1, pin, dyad.inner[1].way, block)
 
 
-def rpr(dyad: DyadParts) -> None:
+def rpr(dyad: DyadConstruction) -> None:
     """Add a guide and a block, turned until both pins fit."""
     build, k = dyad.build, dyad.index
     one, two = dyad.known(0).point, dyad.known(1).point
@@ -96,7 +96,7 @@ def rpr(dyad: DyadParts) -> None:
             dyad.hold(j, point, dyad.outer[j].way, guide.minus(dyad.inner[j].angle))
 
 
-def prp(dyad: DyadParts) -> None:
+def prp(dyad: DyadConstruction) -> None:
     """Add two blocks pinned to each other, where their two lines meet."""
     guides = [dyad.known(j) for j in (0, 1)]
     blocks = [guide.angle.minus(end.angle) for guide, end in zip(guides, dyad.outer, strict=True)]
@@ -111,7 +111,7 @@ def prp(dyad: DyadParts) -> None:
             dyad.hold(j, pin, dyad.inner[j].way, block)
 
 
-def rpp(dyad: DyadParts) -> None:
+def rpp(dyad: DyadConstruction) -> None:
     """Add a link on a slide that slides, where two lines meet."""
     outer, guide = dyad.known(0).point, dyad.known(1)
     block = guide.angle.minus(dyad.outer[1].angle)
@@ -142,13 +142,13 @@ def _less(angle: Angle) -> str:
     return "" if angle.is_zero else f" - ({angle.text})"
 
 
-def _line(dyad: DyadParts, start: str, angle: Angle, index: str) -> str:
+def _line(dyad: DyadConstruction, start: str, angle: Angle, index: str) -> str:
     """Add the line of a guide, or one beside it; return its name."""
     ahead = at(start).plus(along("1", angle)).text
     return dyad.build.shape("line", ("g", f"{dyad.index}{index}"), "guide", "Line", (start, ahead))
 
 
-class DyadParts:
+class DyadConstruction:
     """A dyad to be constructed. `index` is that of its helpers, `mode` the number that says which of two ways."""
 
     def __init__(self, placed: PlacedBodies, sides: PairSides, solver: DyadSolver, index: str, mode: str) -> None:
@@ -219,7 +219,7 @@ class DyadParts:
 
 
 # By the dyads' names.
-CONSTRUCTIONS: Mapping[str, Callable[[DyadParts], None]] = {
+CONSTRUCTIONS: Mapping[str, Callable[[DyadConstruction], None]] = {
     one.__name__.upper(): one for one in (rrr, rrp, rpr, prp, rpp)
 }
 

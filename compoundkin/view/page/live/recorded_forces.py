@@ -231,24 +231,22 @@ class RecordedPairForce(ForceComponents):
 
     forces: ForceResult
     pair: Pair
-    ends_of: Ends
-    poses_of: tuple[Pose, ...]
-    wrench: Wrench
+    recorded: RecordedAnalysis
 
     @property
     def ends(self) -> Ends:
         """The pair's sides on its members."""
-        return self.ends_of
+        return self.recorded.at.pair(self.pair.name)[1]
 
     @property
     def poses(self) -> tuple[Pose, ...]:
         """The poses of its members."""
-        return self.poses_of
+        return tuple(self.recorded.at.block.world[link] for link in self.pair.members)
 
     @property
     def own(self) -> Wrench:
         """The wrench on the second link."""
-        return self.wrench
+        return self.recorded.reactions.pairs[self.pair.name]
 
     def part(self, word: str) -> Number:
         """Return a part by its word."""
@@ -328,11 +326,7 @@ class RecordedAnalysis:
     @cached_property
     def pairs(self) -> Mapping[str, RecordedPairForce]:
         """The force in each pair by its name."""
-        return {name: self._pair(name, wrench) for name, wrench in self.reactions.pairs.items()}
-
-    def _pair(self, name: str, wrench: Wrench) -> RecordedPairForce:
-        pair, ends = self.at.pair(name)
-        return RecordedPairForce(self.own, pair, ends, tuple(self.at.block.world[one] for one in pair.members), wrench)
+        return {name: RecordedPairForce(self.own, self.at.pair(name)[0], self) for name in self.reactions.pairs}
 
     @cached_property
     def drives(self) -> Mapping[str, RecordedEffort]:
