@@ -20,6 +20,8 @@ from compoundkin.base.series import Series, as_series, compose_series, derivativ
 SAMPLES = 2048
 # Places where what is given as a curve is tried.
 TRIED = 7
+# The derivatives of one place that are computed at once: those of its curvature.
+USUAL = 2
 
 
 class Curve(ABC):
@@ -222,6 +224,16 @@ class Analytic(Curve):
         check_points(s, points, float(np.max(np.abs(points - points[0]))), self.closed)
 
     def _expansion(self, s: Number, order: int) -> tuple[Number, ...]:
+        if np.size(s) != 1:
+            return self._expanded(s, order)
+        # a pair is asked for its distance, its normal and its curvature at one place, one after another
+        key, (place, known) = (np.shape(s), float(np.ravel(s)[0])), self.__dict__.get("_last", (None, ()))
+        if place != key or len(known) <= order:
+            known = self._expanded(s, max(order, USUAL))
+            self.__dict__["_last"] = key, known
+        return known[: order + 1]
+
+    def _expanded(self, s: Number, order: int) -> tuple[Number, ...]:
         moving = Series((s, 1.0, *[0.0] * (order - 1))) if order else Series((s,))
         found = self.function(moving).c
         shape = np.shape(s)
