@@ -227,7 +227,9 @@ class Analytic(Curve):
         if np.size(s) != 1:
             return self._expanded(s, order)
         # a pair is asked for its distance, its normal and its curvature at one place, one after another
-        key, (place, known) = (np.shape(s), float(np.ravel(s)[0])), self.__dict__.get("_last", (None, ()))
+        key = np.shape(s), float(np.ravel(s)[0])
+        known: tuple[Number, ...]
+        place, known = self.__dict__.get("_last", (None, ()))
         if place != key or len(known) <= order:
             known = self._expanded(s, max(order, USUAL))
             self.__dict__["_last"] = key, known
