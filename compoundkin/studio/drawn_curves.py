@@ -19,7 +19,7 @@ from compoundkin.model.geometry import FRAME
 
 if TYPE_CHECKING:
     from compoundkin.dimensional.candidates import Linkage
-    from compoundkin.dimensional.coupler_atlas import CouplerAtlas
+    from compoundkin.dimensional.coupler_atlas import AtlasMatch, CouplerAtlas
     from compoundkin.dimensional.curve_chains import CurveChain, Laying
 
 Reply: TypeAlias = dict[str, Any]
@@ -77,10 +77,17 @@ def _atlas() -> CouplerAtlas:
     return coupler_atlas(6, DESIGNS)
 
 
+def _nearest(curve: PenCurve, count: int, links: int) -> list[AtlasMatch]:
+    """Return designs of the atlas near a curve, of so many links at most, though it may have none of so many."""
+    atlas = _atlas()
+    most = max(one for one in atlas.links if one <= links)
+    return atlas.near(curve.points, count, closed=curve.closed, links=most)
+
+
 def near(question: Mapping[str, Any]) -> Reply:
     """Reply the designs of the atlas whose curves are nearest to one, as they lie on it."""
     curve = PenCurve.of(question)
-    matches = _atlas().near(curve.points, LOOKED_AT, closed=curve.closed, links=curve.links)
+    matches = _nearest(curve, LOOKED_AT, curve.links)
     return _reply(curve, (_laid(curve, one.chain, one.design, one.laying) for one in matches))
 
 
@@ -89,9 +96,9 @@ def fitted(question: Mapping[str, Any]) -> Reply:
     from compoundkin.dimensional.curve_fitting import fitted as refined
 
     curve = PenCurve.of(question)
-    matches = _atlas().near(curve.points, LOOKED_AT, closed=curve.closed, links=curve.links)
+    matches = _nearest(curve, LOOKED_AT, curve.links)
     if curve.links > 4:  # seldom the nearest, and often what one wants
-        matches += _atlas().near(curve.points, SIMPLE, closed=curve.closed, links=4)
+        matches += _nearest(curve, SIMPLE, 4)
     found = refined(matches, curve.points, curve.closed, curve.links, rounds=0)
     return _reply(curve, (_laid(curve, one.chain, one.design, one.laying) for one in found))
 

@@ -71,6 +71,12 @@ def test_suggestions_go_along_the_curve_each_step_nearer(closed: bool, monkeypat
     assert len(best) == 2 or best[2] <= best[1] * 1.2
 
 
+def test_of_more_links_than_the_atlas_has_all_of_it_is_near() -> None:
+    one, two = (asked("near", EGG, links=links) for links in (6, 8))
+    assert one == two
+    assert one["suggestions"]
+
+
 def test_the_best_of_each_number_of_links_is_among_them() -> None:
     found = asked("near", EGG)["suggestions"]
     assert {4, 6} <= {one["links"] for one in found}
