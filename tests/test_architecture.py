@@ -304,6 +304,24 @@ def test_what_a_mechanism_has_not_is_not_loaded(statement: str) -> None:
     assert not [name for name in loaded if name.startswith(tuple(f"compoundkin.{room}" for room in rooms))]
 
 
+def test_the_page_of_a_mechanism_loads_what_is_on_it(tmp_path: Path) -> None:
+    """Neither forces nor cams, which a linkage of bars has not; nor studies, nor the graph that users get."""
+    page = tmp_path / "page.html"
+    loaded = modules_loaded_by(f"from compoundkin.cli import cli\ncli(['report', 'six-bar', '-o', {str(page)!r}], "
+                               "standalone_mode=False)")  # fmt: skip
+    assert page.exists()
+    rooms = (
+        "dynamics.",
+        "studies",
+        "dimensional",
+        "model.pairs.cam",
+        "model.profiles.synthesised",
+        "synthesis.linkages",
+    )
+    own = [f"compoundkin.{name}" for name in rooms]
+    assert not [name for name in loaded if name.startswith((*own, "networkx", "scipy", "pandas", "rich"))]
+
+
 def test_solving_loads_nothing_heavy_either() -> None:
     words = (
         "import compoundkin as ck\n"

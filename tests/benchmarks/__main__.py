@@ -230,14 +230,14 @@ def force_rows() -> Iterator[Row]:
 def start_rows() -> Iterator[Row]:
     """The start of commands."""
     verb = "from compoundkin.cli import main; main()"
-    page = str(Path(tempfile.mkdtemp()) / "page.html")
+    folder = Path(tempfile.mkdtemp())
     codes = {
         "import numpy": ["-c", "import numpy"],
         "import compoundkin": ["-c", "import compoundkin"],
         "structure six-bar": ["-c", verb, "structure", "six-bar"],
-        "report six-bar -o page.html": ["-c", verb, "report", "six-bar", "-o", page],
+        "report six-bar -o page.html": ["-c", verb, "report", "six-bar", "-o", str(folder / "page.html")],
     }
-    times = commands(codes, 7)
+    times = commands(codes, 7, folder / "bytecode")
     yield from (
         Row("start", name, shown(min(own)), _beside(times, name, "import numpy")) for name, own in times.items()
     )

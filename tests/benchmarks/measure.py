@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from statistics import median
 from typing import Any
 
@@ -42,11 +43,16 @@ def ratio(times: Times, one: str, other: str) -> float:
     return median(a / b for a, b in zip(times[one], times[other], strict=True))
 
 
-def commands(codes: Mapping[str, list[str]], rounds: int) -> Times:
-    """The seconds of processor time of Python with these arguments, started anew, interleaved."""
+def commands(codes: Mapping[str, list[str]], rounds: int, bytecode: Path) -> Times:
+    """The seconds of processor time of Python with these arguments, started anew, interleaved.
+
+    Their bytecode is kept in a folder: by the round that is not counted.
+    """
+    kept = {"PYTHONPYCACHEPREFIX": str(bytecode), "PYTHONDONTWRITEBYTECODE": "", "OPENBLAS_NUM_THREADS": "1"}
+    silent: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 
     def start(arguments: list[str]) -> Callable[[], Any]:
-        return lambda: subprocess.run([sys.executable, *arguments], check=True, stdout=subprocess.DEVNULL)
+        return lambda: subprocess.run([sys.executable, *arguments], check=True, env={**os.environ, **kept}, **silent)
 
     return interleaved({name: start(arguments) for name, arguments in codes.items()}, rounds, _of_children)
 
