@@ -47,11 +47,6 @@ class SampledCourse(NamedTuple):
     greatest: Number
     least: Number
 
-    @property
-    def negative(self) -> SampledCourse:
-        """The same with the other sign."""
-        return SampledCourse(self.parts, -self.values, self.least, self.greatest)
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CourseSearch(ShortRepr):
@@ -69,8 +64,7 @@ class CourseSearch(ShortRepr):
     def extreme(self) -> CourseExtreme:
         """Return the greatest values, times the sign."""
         with np.errstate(all="ignore"):
-            course = self.designs.computed_once((SampledCourse, self.name), self._course)
-            value, place = self._searched(course if self.sign > 0.0 else course.negative)
+            value, place = self._searched(self.designs.computed_once((SampledCourse, self.name), self._course))
         value = np.where(assembled_range(self.designs).assembled, self.sign * value, np.nan)
         return CourseExtreme(value, np.where(np.isnan(value), np.nan, place))
 
@@ -88,13 +82,14 @@ class CourseSearch(ShortRepr):
 
     def _searched(self, sampled: SampledCourse) -> tuple[Number, Number]:
         """Return the greatest values and their places: of samples, and of peaks in the windows around them."""
-        parts, course, k, low = sampled
+        parts, course, *ends = sampled
+        k, other = ends if self.sign > 0.0 else ends[::-1]
         every = np.arange(len(course))
         begin, flat = every * course.shape[1], np.ravel(course)
-        best, least = flat.take(begin + k), flat.take(begin + low)
+        best, least = (self.sign * flat.take(begin + own) for own in (k, other))
         largest = np.maximum(np.abs(best), np.abs(least))
         offers = [Offers(every, best, k / parts)]
-        rows, k = _peaks(course, best)
+        rows, k = _peaks(course, best, self.sign)
         if len(rows):
             span = best - least
             sought = SoughtPeaks(rows, np.full(len(rows), self.sign), largest.take(rows), span.take(rows))
@@ -150,17 +145,18 @@ class DesignCourses(ShortRepr):
         return self.search.designs.values_at(self.search.name, self.rows[which], places, self.search.is_angle)
 
 
-def _peaks(course: Number, best: Number) -> tuple[Number, Number]:
+def _peaks(course: Number, best: Number, sign: float) -> tuple[Number, Number]:
     """Return designs and poses near which the greatest value may be: no neighbour is higher, the bend is large enough.
 
-    `best` are the greatest at the poses, (designs,).
+    `best` are the greatest at the poses, (designs,). Values are times the sign.
     """
-    poses = course.shape[1]
+    poses, ordered = course.shape[1], (np.greater_equal, np.less_equal)
+    rises, drops = ordered if sign > 0.0 else ordered[::-1]
     # all rows are compared as one, which their ends interrupt
     flat = np.ravel(course)
     peak, falls = np.empty((2, *course.shape), dtype=bool)
-    np.greater_equal(flat[1:], flat[:-1], out=np.ravel(peak)[1:])
-    np.less_equal(flat[1:], flat[:-1], out=np.ravel(falls)[:-1])
+    rises(flat[1:], flat[:-1], out=np.ravel(peak)[1:])
+    drops(flat[1:], flat[:-1], out=np.ravel(falls)[:-1])
     peak[:, 0] = falls[:, -1] = True
     peak &= falls
     found = np.flatnonzero(peak)
@@ -176,7 +172,7 @@ def _peaks(course: Number, best: Number) -> tuple[Number, Number]:
     added = np.abs(after - own)
     added *= MOST_ADDED
     best = best.take(rows)
-    may = np.flatnonzero((flat.take(found) + added >= best) & (added > ROUNDING * np.abs(best)))
+    may = np.flatnonzero((sign * flat.take(found) + added >= best) & (added > ROUNDING * np.abs(best)))
     return rows.take(may), k.take(may)
 
 
