@@ -80,6 +80,11 @@ class _Search:
         index = self._evaluate(np.concatenate([ends.ravel(), alone]))[: ends.size].reshape(ends.shape)
         groups = range(len(self.system.blocks))
         rows = np.concatenate([self._alive(np.column_stack([index, np.full(len(index), g)])) for g in groups])
+        limits = np.concatenate([s.low[mine][s.limits[mine, 0]], s.high[mine][s.limits[mine, 1]]])
+        return self._joined(self._halved(rows), limits)
+
+    def _halved(self, rows: Number) -> list[tuple[float, float]]:
+        """Halve intervals (index of both ends, group) while they may be singular; return those that are throughout."""
         whole = list[tuple[float, float]]()
         while len(rows):
             low, high = self.places[rows[:, 0]], self.places[rows[:, 1]]
@@ -94,7 +99,7 @@ class _Search:
             halves = [np.column_stack(part)[~flat] for part in ((rows[:, 0], middle, rows[:, 2]),
                                                                 (middle, rows[:, 1], rows[:, 2]))]  # fmt: skip
             rows = self._alive(np.concatenate(halves))
-        return self._joined(whole, np.concatenate([s.low[mine][s.limits[mine, 0]], s.high[mine][s.limits[mine, 1]]]))
+        return whole
 
     def _divided(self, ends: Number) -> Number:
         """Return intervals divided next to the change points that the motion knows: their places are known at once."""

@@ -413,7 +413,23 @@ def strength(
     if not (mechanism.masses or mechanism.loads):
         remedy = "give it masses or loads: ck.mass, ck.force, ck.gravity"
         raise InvalidInput(Problem("forces", "the mechanism has no masses and no loads", remedy))
-    own = [name for name in mechanism.links if name != FRAME]
+    bars, undefined = _bars(forces, links)
+    chosen = {
+        name: _section(_with_bar(name, bars, undefined, "sections"), one) for name, one in (sections or {}).items()
+    }
+    stresses = {name: np.abs(bars[name].normal) / one.area + np.abs(bars[name].bending) / one.modulus
+                for name, one in chosen.items()}  # fmt: skip
+    buckling = {}
+    for name, modulus in (elasticity or {}).items():
+        section = chosen.get(_with_bar(name, bars, undefined, "elasticity"))
+        buckling[name] = _buckling(bars[name], _stiffness(name, modulus, section))
+    held = {letter: _pin_stress(forces, letter, given) for letter, given in (pins or {}).items()}
+    return Strength(forces, bars, undefined, stresses, buckling, held)
+
+
+def _bars(forces: Forces, links: Sequence[str]) -> tuple[dict[str, BarForces], dict[str, str]]:
+    """Return the bars of links, of all but the frame where none is named; and why others are none."""
+    own = [name for name in forces.mechanism.links if name != FRAME]
     for name in links:
         if name not in own:
             what = "the frame is no bar" if name == FRAME else "there is no such link"
@@ -428,20 +444,16 @@ def strength(
             undefined[name] = points
         else:
             bars[name] = _bar(forces, name, points)
-    chosen = {
-        name: _section(_with_bar(name, bars, undefined, "sections"), one) for name, one in (sections or {}).items()
-    }
-    stresses = {name: np.abs(bars[name].normal) / one.area + np.abs(bars[name].bending) / one.modulus
-                for name, one in chosen.items()}  # fmt: skip
-    buckling = {}
-    for name, modulus in (elasticity or {}).items():
-        if _with_bar(name, bars, undefined, "elasticity") not in chosen:
-            what = "a modulus of elasticity without a section"
-            raise InvalidInput(Problem(f"elasticity[{name!r}]", what, f"give sections={{{name!r}: ...}} too"))
-        stiffness = _positive(f"elasticity[{name!r}]", modulus) * chosen[name].second_moment
-        buckling[name] = _buckling(bars[name], stiffness)
-    held = {letter: _pin_stress(forces, letter, given) for letter, given in (pins or {}).items()}
-    return Strength(forces, bars, undefined, stresses, buckling, held)
+    return bars, undefined
+
+
+def _stiffness(link: str, modulus: Any, section: BarSection | None) -> float:
+    """Return the bending stiffness of a bar. Raises InvalidInput where it has no section."""
+    where = f"elasticity[{link!r}]"
+    if section is None:
+        what = "a modulus of elasticity without a section"
+        raise InvalidInput(Problem(where, what, f"give sections={{{link!r}: ...}} too"))
+    return _positive(where, modulus) * section.second_moment
 
 
 def _with_bar(link: str, bars: Mapping[str, BarForces], undefined: Mapping[str, str], where: str) -> str:

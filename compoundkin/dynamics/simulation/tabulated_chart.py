@@ -106,9 +106,15 @@ class TabulatedChart(DriverChart):
         if type(self) is not TabulatedChart or self.held is not None or self._added:
             return asked
         efforts, rotors = self.plain_efforts, self.plain_rotors
-        if efforts is None or rotors is None:
-            return asked
+        return asked if efforts is None or rotors is None else self._table_rates(efforts, rotors, asked)
 
+    def _table_rates(
+        self,
+        efforts: Sequence[tuple[PlainEffort, float]],
+        rotors: Sequence[tuple[PlainRotor, float]],
+        asked: PlainRates,
+    ) -> PlainRates:
+        """Return these by the cells of the table, with the efforts of loads along the driver; beyond it as `asked`."""
         table, piece = self.table, None
         idle = not efforts and not rotors and not self.timeless[1]
 

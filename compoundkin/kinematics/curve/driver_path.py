@@ -313,33 +313,42 @@ def _line(
     if shares is None:
         return None
     share, farthest = shares
+    foot, rows = _nearest(solving_order, given, values) if values else 0.0, np.arange(len(value))
+    each = np.max(np.abs(value[rows, farthest] - value[:, 0]), axis=-1, keepdims=True) / SPACING
+    places, far = _places_on_line(share, _between_poses(share, foot), each)
     # from its least share to its greatest; the poses' own values are exact, the path's those of its ends
     order = np.argsort(share, axis=1, kind="stable")
-    foot = _nearest(solving_order, given, values) if values else 0.0
-    least, most = share.min(axis=1, keepdims=True), share.max(axis=1, keepdims=True)
-    count = given.poses
-    i = min(int(foot), max(count - 2, 0))
-    at_foot = share[:, i : i + 1] * (1.0 - (foot - i)) + share[:, i + 1 : i + 2] * (foot - i)
-    rows = np.arange(len(value))
-    each = np.max(np.abs(value[rows, farthest] - value[:, 0]), axis=-1, keepdims=True) / SPACING
-    below, above = at_foot - least, most - at_foot
-    far = float((each * below).max()), float((each * above).max())
-    scale = np.where(
-        share < at_foot,
-        np.divide(far[0], below, out=np.zeros_like(below), where=below > 0.0),
-        np.divide(far[1], above, out=np.zeros_like(above), where=above > 0.0),
-    )
-    places = (share - at_foot) * scale
     drives = _first_drives(given)
     keeps = [k for k, wanted in enumerate((far[0] > CLOSE, True, far[1] > CLOSE)) if wanted]
     for name in moving:
         own = np.broadcast_to(given.drives[name][0], value.shape[:2])
-        at = own[:, i : i + 1] * (1.0 - (foot - i)) + own[:, i + 1 : i + 2] * (foot - i)
-        knots = [own[rows, order[:, 0]][:, None], at, own[rows, order[:, -1]][:, None]]
+        knots = [own[rows, order[:, 0]][:, None], _between_poses(own, foot), own[rows, order[:, -1]][:, None]]
         drives[name] = (np.concatenate([knots[k] for k in keeps], axis=1),)
     knots_at = np.array([(-far[0], 0.0, far[1])[k] for k in keeps])
     path = DriverPath(_first(given).driven(drives).of_poses(len(keeps)), knots_at, 0.0)
     return _with_stem(solving_order, path, PosePlaces(places), values)
+
+
+def _between_poses(rows: Number, at: float) -> Number:
+    """Return rows (designs, poses) at an index between two poses, as a column."""
+    i = min(int(at), max(rows.shape[1] - 2, 0))
+    found: Number = rows[:, i : i + 1] * (1.0 - (at - i)) + rows[:, i + 1 : i + 2] * (at - i)
+    return found
+
+
+def _places_on_line(share: Number, foot: Number, each: Number) -> tuple[Number, tuple[float, float]]:
+    """Return the places of shares of a line with so many places `each`, from a foot on, and how far they go both ways.
+
+    Designs go their own way, each in as many places.
+    """
+    below, above = foot - share.min(axis=1, keepdims=True), share.max(axis=1, keepdims=True) - foot
+    far = float((each * below).max()), float((each * above).max())
+    scale = np.where(
+        share < foot,
+        np.divide(far[0], below, out=np.zeros_like(below), where=below > 0.0),
+        np.divide(far[1], above, out=np.zeros_like(above), where=above > 0.0),
+    )
+    return (share - foot) * scale, far
 
 
 def _shares(value: Number) -> tuple[Number, Number] | None:
@@ -384,15 +393,7 @@ def _with_stem(
 ) -> PathOfPoses:
     """Return a path that goes from its home to the drawn pose and back, where that lies beside it."""
     foot = path.at_home()
-    drawn: dict[str, Number] = {}
-    length = 0.0
-    for name, value in values.items():
-        way = foot.drives[name][0] - value
-        is_angle = solving_order.structure.driven_angles[name]
-        way = way - whole_turns(way) if is_angle else way
-        drawn[name] = foot.drives[name][0] - way
-        far = float(np.max(np.abs(way) / (solving_order.unit_in(foot.ends, name) * SPACING)))
-        length = max(length, far if is_angle else min(far, MOST))
+    drawn, length = _drawn_beside(solving_order, foot, values)
     if length <= CLOSE:
         return path, poses
     k, last = int(np.searchsorted(path.places, path.home)), len(path.places) - 1
@@ -414,6 +415,21 @@ def _with_stem(
     knots = path.knots.with_dimensions(lambda v: v if np.ndim(v) == 0 or v.shape[1] == 1 else v[:, index])
     whole = replace(path, knots=knots.driven(drives).of_poses(len(places)), places=places, home=home, wraps=False)
     return whole, PosePlaces(poses.places, path.home, 2.0 * length) if folded else poses
+
+
+def _drawn_beside(
+    solving_order: SolvingOrder, foot: Inputs, values: Mapping[str, Number]
+) -> tuple[dict[str, Number], float]:
+    """Return the drawn values of drivers, in the turns of their values at a foot, and how many places away they are."""
+    drawn, length = dict[str, Number](), 0.0
+    for name, value in values.items():
+        way = foot.drives[name][0] - value
+        is_angle = solving_order.structure.driven_angles[name]
+        way = way - whole_turns(way) if is_angle else way
+        drawn[name] = foot.drives[name][0] - way
+        far = float(np.max(np.abs(way) / (solving_order.unit_in(foot.ends, name) * SPACING)))
+        length = max(length, far if is_angle else min(far, MOST))
+    return drawn, length
 
 
 def approach(path: DriverPath, poses: PosePlaces) -> Inputs | None:

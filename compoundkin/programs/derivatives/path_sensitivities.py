@@ -103,17 +103,7 @@ class SensitivityPrograms(ShortRepr):
         """Compute outputs and slopes by the names given, or by all free dimensions and drivers."""
         check_threads(threads)
         known = _directions(numbers)
-        named = list(known) if by is None else [by] if isinstance(by, str) else [str(name) for name in by]
-        # the name of a free point stands for both coordinates
-        chosen = [
-            each
-            for name in named
-            for each in ([] if name in known else [k for k, one in known.items() if one.name == name]) or [name]
-        ]
-        unknown = [name for name in chosen if name not in known]
-        if unknown:
-            what = "it is not an input"
-            raise UnknownName([Problem(f"by.{name}", what, suggestion(name, list(known))) for name in unknown])
+        chosen = _chosen(known, by)
         path, names = self.path, self.path.names
         laws = [one for one in path.law_numbers if one.name in chosen]
         read = {name: known[name] for name in chosen if name not in {one.name for one in laws}}
@@ -152,6 +142,22 @@ class SensitivityPrograms(ShortRepr):
             path, backend = self.path.variant(numbers.still, is_seeded), self.path.chosen_backend
             self._programs[key] = sensitivity_program(path, self.path.names, by, numbers, backend)
         return self._programs[key].run(numbers, threads)
+
+
+def _chosen(known: Mapping[str, InputNumber], by: str | Sequence[str] | None) -> list[str]:
+    """Return the inputs of the names given, or all. Raises UnknownName for what is none."""
+    named = list(known) if by is None else [by] if isinstance(by, str) else [str(name) for name in by]
+    # the name of a free point stands for both coordinates
+    chosen = [
+        each
+        for name in named
+        for each in ([] if name in known else [k for k, one in known.items() if one.name == name]) or [name]
+    ]
+    unknown = [name for name in chosen if name not in known]
+    if unknown:
+        what = "it is not an input"
+        raise UnknownName([Problem(f"by.{name}", what, suggestion(name, list(known))) for name in unknown])
+    return chosen
 
 
 def _directions(numbers: CallNumbers) -> dict[str, InputNumber]:

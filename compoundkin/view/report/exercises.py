@@ -375,7 +375,7 @@ def _variant(template: _Template, seed: int, number: int, kinds: Sequence[str]) 
         if motion is None or reason:
             continue
         if not (values and is_known) or template.solved(values, share) is not None:
-            return _exercise(number, mechanism, motion, template, kinds)
+            return _exercise(number, mechanism, motion, kinds)
         reason = "it does not assemble wherever the given one does"
     what = f"no variant {number} was found among {TRIALS}: {reason or 'its poses do not assemble'}"
     raise InvalidInput(Problem("vary", what, "vary less, or take another seed"))
@@ -441,42 +441,38 @@ def _special(motion: Motion, strict: bool) -> str:
     return ""
 
 
-def _exercise(number: int, mechanism: Mechanism, motion: Motion, template: _Template, kinds: Sequence[str]) -> Exercise:
-    stated = StatedDimensions(mechanism, motion.inputs.ends)
-    given: list[tuple[Cell, ...]] = []
+def _exercise(number: int, mechanism: Mechanism, motion: Motion, kinds: Sequence[str]) -> Exercise:
+    asked = tuple(_QUESTIONS[kind](motion.structure, motion) for kind in kinds)
+    return Exercise(number, mechanism, motion, tuple(_dimensions(mechanism, motion)), tuple(_drives(motion)), asked)
+
+
+def _dimensions(mechanism: Mechanism, motion: Motion) -> Iterator[tuple[Cell, ...]]:
+    """Yield the dimensions that are given: of links, a bar by its length, then of pairs."""
     for link, points in mechanism.geometry.points.items():
         places = {letter: complex(np.ravel(point)[0]) for letter, point in points.items()}
         (first, start), *rest = places.items() or (("", 0j),)
         if link != FRAME and len(rest) == 1 and start == 0 and rest[0][1].imag == 0 and rest[0][1].real > 0:
-            given.append((link, f"length {first}{rest[0][0]}", number_text(rest[0][1].real), mechanism.unit))
+            yield link, f"length {first}{rest[0][0]}", number_text(rest[0][1].real), mechanism.unit
             continue
         for letter, place in places.items():
             if link == FRAME or len(places) > 1 or place:
                 text = f"({number_text(place.real)}, {number_text(place.imag)})"
-                given.append((link, f"point {letter}", text, mechanism.unit))
+                yield link, f"point {letter}", text, mechanism.unit
+    stated = StatedDimensions(mechanism, motion.inputs.ends)
     for one in stated.known.values():
         if one.is_read and not one.is_of_link:
             own, unit = float(np.ravel(stated.own(one))[0]), stated.unit(one)
             shown = float(degrees(own)) if unit == "rad" else own
-            given.append((one.owner, one.number, number_text(shown), "deg" if unit == "rad" else unit))
-    sample = Sample(motion)
-    drives: list[tuple[Cell, ...]] = []
-    for shown_value in sample.drivers:
-        drive = motion.drives[shown_value.name]
-        rate = f"{mechanism.unit or 'length'}/s" if not drive.is_angle else "rad/s"
-        value, speed = float(np.ravel(shown_value.values)[0]), float(np.ravel(drive.rate)[0])
-        drives.append((shown_value.name, number_text(value), shown_value.unit, number_text(speed), rate))
-    structure = motion.structure
-    makers = {
-        "mobility": _mobility,
-        "groups": _groups,
-        "positions": _positions,
-        "velocities": _velocities,
-        "accelerations": _accelerations,
-        "forces": _forces_question,
-    }
-    asked = tuple(makers[kind](structure, motion) for kind in kinds)
-    return Exercise(number, mechanism, motion, tuple(given), tuple(drives), asked)
+            yield one.owner, one.number, number_text(shown), "deg" if unit == "rad" else unit
+
+
+def _drives(motion: Motion) -> Iterator[tuple[Cell, ...]]:
+    """Yield the values and the speeds of the drivers."""
+    for shown in Sample(motion).drivers:
+        drive = motion.drives[shown.name]
+        rate = f"{motion.mechanism.unit or 'length'}/s" if not drive.is_angle else "rad/s"
+        value, speed = float(np.ravel(shown.values)[0]), float(np.ravel(drive.rate)[0])
+        yield shown.name, number_text(value), shown.unit, number_text(speed), rate
 
 
 def _of_one_group(shape: Shape) -> Shape:
@@ -614,3 +610,13 @@ def _forces_question(structure: Structure, motion: Motion) -> Question:
         answers.append(ExerciseAnswer(word, float(known.of(one.values)[0]), one.unit))
     text = "Draw the free body of every link, and find the forces in the pins and what the drivers must give."
     return Question("forces", text, tuple(answers), sheet(forces, pose=0).sections)
+
+
+_QUESTIONS: Mapping[str, Callable[[Structure, Motion], Question]] = {
+    "mobility": _mobility,
+    "groups": _groups,
+    "positions": _positions,
+    "velocities": _velocities,
+    "accelerations": _accelerations,
+    "forces": _forces_question,
+}
