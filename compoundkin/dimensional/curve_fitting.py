@@ -536,11 +536,7 @@ def _gaps(w: Number, tangent: Number, slopes: Number, places: Number, target: Cu
         weight, ahead = np.zeros(w.shape), np.gradient(places, axis=1)
         weight[:, 1:] += length
         weight[:, :-1] += length
-    plane = np.stack([w.real, w.imag], axis=-1)
-    square = plane @ np.stack([-2.0 * places.real, -2.0 * places.imag], axis=1)
-    square += (np.abs(w) ** 2)[:, :, None]
-    square += (np.abs(places) ** 2)[:, None, :]
-    rows, at, nearest = np.arange(len(w))[:, None], square.argmin(axis=1), square.argmin(axis=2)
+    rows, at, nearest = np.arange(len(w))[:, None], _nearest_places(places, w), _nearest_places(w, places)
     # each pose counts by its part of the arc, as if they lay evenly along it
     share = np.sqrt(weight / (2.0 * length.sum(axis=1, keepdims=True)) * POSES)
     parts, steeps = list[Number](), list[Number]()
@@ -560,6 +556,17 @@ def _gaps(w: Number, tangent: Number, slopes: Number, places: Number, target: Cu
         parts += [own.real, own.imag]
         steeps += [slope.real, slope.imag]
     return np.concatenate(parts, axis=1), np.moveaxis(np.concatenate(steeps, axis=2), 0, 2)
+
+
+def _nearest_places(w: Number, places: Number) -> Number:
+    """Return which places (designs, n) are nearest to others, w (designs, m): (designs, m)."""
+    plane = np.stack([w.real, w.imag, np.ones(w.shape)], axis=-1)
+    theirs = np.stack([-2.0 * places.real, -2.0 * places.imag, places.real**2 + places.imag**2], axis=1)
+    # one design at a time stays in the processor's cache
+    square, found = np.empty((w.shape[1], places.shape[1])), np.empty(w.shape, int)
+    for k in range(len(w)):
+        np.matmul(plane[k], theirs[k], out=square).argmin(axis=1, out=found[k])
+    return found
 
 
 def _lengths(w: Number, closed: bool) -> Number:

@@ -39,8 +39,10 @@ GIVEN, OF_A_KIND, LOOKED_AT, ALIKE = 8, 3, 60, 0.1
 Residuals: TypeAlias = Callable[[Number, Number], tuple[Number, Number, Number]]
 
 
-def levenberg_steps(r: Number, j: Number, damping: Number, floor: float, *, of_greatest: bool = False) -> Number:
+def levenberg_steps(r: Number, j: Number, damping: Number, floor: float, *, of_greatest: bool = False) -> tuple[Number, Number]:
     """Return the steps (designs, numbers) that residuals (designs, n) with slopes (designs, n, numbers) ask for.
+
+    And by how much they lower the sums of squares, (designs,), as far as slopes can tell.
 
     A `floor` is added to the diagonal, for what residuals do not depend on: as it is, or as a part `of_greatest` of its
     entries, where residuals have units.
@@ -51,7 +53,9 @@ def levenberg_steps(r: Number, j: Number, damping: Number, floor: float, *, of_g
     diagonal = normal[:, at, at]
     least = floor * diagonal.max(axis=1, keepdims=True) + 1e-300 if of_greatest else floor
     normal[:, at, at] = (diagonal + least) * (1.0 + damping[:, None])
-    return np.linalg.solve(normal, slope)[:, :, 0]
+    step = np.linalg.solve(normal, slope)[:, :, 0]
+    foreseen = ((slope[:, :, 0] + damping[:, None] * (diagonal + least) * step) * step).sum(axis=1)
+    return step, foreseen
 
 
 def refined(
@@ -78,7 +82,13 @@ def refined(
         alive = np.flatnonzero(damping < HOPELESS)
         if not len(alive):
             break
-        step = levenberg_steps(r[alive], j[alive], damping[alive], floor, of_greatest=of_greatest)
+        step, foreseen = levenberg_steps(r[alive], j[alive], damping[alive], floor, of_greatest=of_greatest)
+        if settled:
+            goes_on = foreseen > settled * cost[alive]
+            damping[alive[~goes_on]] = 2.0 * HOPELESS
+            alive, step = alive[goes_on], step[goes_on]
+            if not len(alive):
+                continue
         ahead = x[alive] - np.clip(step, -FARTHEST, FARTHEST)
         tried, steep, clear = residuals(ahead, alive)
         costs = (tried**2).sum(axis=1)
