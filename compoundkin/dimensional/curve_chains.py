@@ -13,7 +13,7 @@ so that no growth loses anything.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import combinations
@@ -131,18 +131,31 @@ class CurveChain(ShortRepr):
         low, high = np.array([[np.log(one[1:3]) if one.is_length else one[1:3]] for one in self.numbers]).T
         return low[0] + (high[0] - low[0]) * units
 
+    @cached_property
+    def _are_lengths(self) -> Number:
+        return np.array([one.is_length for one in self.numbers])
+
+    @cached_property
+    def _columns(self) -> Mapping[str, tuple[int, ...]]:
+        """The columns of dimensions by name: one, or two of a point."""
+        at = {one.name: k for k, one in enumerate(self.numbers)}
+        points = {one.point: component_names(one.point) for one in self.numbers if one.point}
+        found = {name: tuple(at[part] for part in parts) for name, parts in points.items()}
+        return found | {one.name: (at[one.name],) for one in self.numbers if not one.point}
+
+    def measures(self, designs: Number) -> Number:
+        """Return the lengths and coordinates of designs (designs, numbers)."""
+        return np.exp(designs, out=np.array(designs, float), where=self._are_lengths)
+
     def dimensions(self, designs: Number) -> dict[str, Number]:
         """Return the dimensions of designs by name, arrays (designs, 1)."""
-        values = {one.name: np.exp(column) if one.is_length else column
-                  for one, column in zip(self.numbers, designs.T[:, :, None], strict=True)}  # fmt: skip
-        points = {one.point: component_names(one.point) for one in self.numbers if one.point}
-        found = {name: values[x] + 1j * values[y] for name, (x, y) in points.items()}
-        return found | {one.name: values[one.name] for one in self.numbers if not one.point}
+        values = self.measures(designs).T[:, :, None]
+        return {name: values[at[0]] if len(at) == 1 else values[at[0]] + 1j * values[at[1]]
+                for name, at in self._columns.items()}  # fmt: skip
 
     def size(self, designs: Number) -> Number:
         """Return the greatest length or coordinate of each design."""
-        lengths = np.array([one.is_length for one in self.numbers])
-        return np.where(lengths, np.exp(np.where(lengths, designs, 0.0)), np.abs(designs)).max(axis=1)
+        return np.abs(self.measures(designs)).max(axis=1)
 
     def curves(self, designs: Number, poses: int) -> tuple[Number, Number]:
         """Return the curves of designs over a turn, (designs, poses), and which designs are clear of limits."""
@@ -167,10 +180,11 @@ class CurveChain(ShortRepr):
         path = self.program
         found, clear = path.sensitivities.unscreened(Call({CRANK: angles}, self.dimensions(designs)))
         output, shape = f"{POINT}.{POSITION}", (len(designs), np.shape(angles)[-1])
-        by = [np.broadcast_to(found[output, one.name], shape) for one in self.numbers]
-        by = [slope * np.exp(designs[:, [k]]) if one.is_length else slope
-              for k, (one, slope) in enumerate(zip(self.numbers, by, strict=True))]  # fmt: skip
-        return found[output, ""], np.array(by), found[output, CRANK], clear
+        by = np.empty((len(self.numbers), *shape), complex)
+        for slope, one in zip(by, self.numbers, strict=True):
+            slope[...] = found[output, one.name]
+        by[self._are_lengths] *= np.exp(designs.T[self._are_lengths])[:, :, None]
+        return found[output, ""], by, found[output, CRANK], clear
 
     def grown(self, second: str, sign: int) -> CurveChain:
         """Return the chain with a dyad more, whose rod lies on the link of P and carries P on."""

@@ -73,7 +73,8 @@ class CurveConditions(NamedTuple):
         held, region = np.ones(len(laid.designs), bool), self.wanted.region
         if region is None and not self.wanted.obstacles:
             return held
-        for pivot in _points(laid)[FRAME].values():
+        plan = _points(laid.chain)
+        for pivot in plan.places(laid)[:, plan.pivots].T:
             place = laid.laid(pivot)
             if region is not None:
                 held &= inside(place, region)
@@ -85,16 +86,14 @@ class CurveConditions(NamedTuple):
         held, bounds = np.ones(len(laid.designs), bool), self.wanted.lengths
         if bounds is None and self.size is None:
             return held
-        points = _points(laid)
-        pivots = tuple(points.pop(FRAME).values())
-        scale = np.abs(laid.scale)
-        lengths = [scale * np.abs(b - a) for each in points.values()
-                   for a, b in combinations([at for letter, at in each.items() if letter != POINT], 2)]  # fmt: skip
+        plan, scale = _points(laid.chain), np.abs(laid.scale)
+        places = plan.places(laid)
+        lengths = scale[:, None] * np.abs(places[:, plan.ends[1]] - places[:, plan.ends[0]])
         if bounds is not None:
-            for one in lengths:
-                held &= (one >= bounds[0]) & (one <= bounds[1])
+            held &= ((lengths >= bounds[0]) & (lengths <= bounds[1])).all(axis=1)
         if self.size is not None:
-            held &= sum(lengths) + scale * np.abs(pivots[0] - pivots[-1]) <= self.size
+            ground = scale * np.abs(places[:, plan.pivots[0]] - places[:, plan.pivots[-1]])
+            held &= lengths.sum(axis=1) + ground <= self.size
         return held
 
     def _motion(self, laid: LaidDesigns) -> Number:
@@ -141,17 +140,42 @@ def bars(links: Mapping[str, Iterable[str]]) -> Iterator[tuple[str, str]]:
             yield from combinations(letters, 2)
 
 
-def _points(laid: LaidDesigns) -> dict[str, dict[str, Number]]:
-    """Return the points of each link of designs in the link's own coordinates, in units of the chain: (designs,)."""
-    own = {name: column[:, 0] for name, column in laid.chain.dimensions(laid.designs).items()}
-    still = np.zeros(len(laid.designs), complex)
-    return {
-        name: {
-            letter: own.get(f"{name}.{letter}", own.get(component_names(f"{name}.{letter}")[0], p)) + still
-            for letter, p in each.items()
-        }
-        for name, each in laid.chain.mechanism.geometry.points.items()
-    }
+class _ChainPoints(NamedTuple):
+    """The points of all links of a chain in their links' own coordinates: of numbers (numbers, points), and fixed.
+
+    `pivots` are those of the frame, `ends` those of the lengths of moving links, (2, lengths).
+    """
+
+    of_numbers: Number
+    fixed: Number
+    pivots: list[int]
+    ends: Number
+
+    def places(self, laid: LaidDesigns) -> Number:
+        """Return the points of designs in units of the chain, (designs, points)."""
+        return laid.chain.measures(laid.designs) @ self.of_numbers + self.fixed
+
+
+@cache
+def _points(chain: CurveChain) -> _ChainPoints:
+    names = {one.name: k for k, one in enumerate(chain.numbers)}
+    of_numbers, fixed, ends, pivots = list[Number](), list[complex](), list[tuple[int, int]](), list[int]()
+    for name, each in chain.mechanism.geometry.points.items():
+        own = list[int]()
+        for letter, p in each.items():
+            if name == FRAME or letter != POINT:
+                own.append(len(fixed))
+            column = np.zeros(len(names), complex)
+            for part, unit in zip(component_names(f"{name}.{letter}"), (1.0, 1j), strict=True):
+                if part in names:
+                    column[names[part]] = unit
+            of_numbers.append(column)
+            fixed.append(0j if column.any() else complex(np.ravel(p)[0]))
+        if name == FRAME:
+            pivots = own
+        else:
+            ends += combinations(own, 2)
+    return _ChainPoints(np.transpose(of_numbers), np.array(fixed), pivots, np.array(ends).T)
 
 
 @cache

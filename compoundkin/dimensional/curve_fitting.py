@@ -401,20 +401,14 @@ def _promised(one: _RefinedDesigns, larger: CurveChain, units: Number) -> tuple[
     designs = one.chain.grown_designs(larger, np.repeat(one.designs, len(units), axis=0), units)
     ahead = designs.copy()
     ahead[:, -2] += 1.0  # P one along the rod
-    r, old, clear = _residuals(one, False)
-    angles, at = _angles(one)[0], one.target.compared
-    z = one.chain.places(one.designs, angles)[0][:, at]
+    own = _compared(one, False)
     _, turns = larger.curves(designs, POSES)
     designs, ahead = designs[turns], ahead[turns]
-    if not len(designs) or not clear.all():
+    if not len(designs) or not own.clear.all():
         return np.zeros(0), designs
-    moved, clear = larger.places(ahead, angles)
-    scale, place = (each[0] for each in _scale_and_place(one.x))
-    way = scale * (moved[:, at] - z)
-    w = np.repeat(scale * z + place, len(designs), axis=0)
-    tangent = scale * np.repeat(_traced(one)[2], len(designs), axis=0)
-    targets = np.repeat(one.target.seen(one.mirrored), len(designs), axis=0)
-    _, new = _gaps(w, tangent, np.array([way, 1j * way]), targets, one.target)
+    moved, clear = larger.places(ahead, _angles(one)[0])
+    way = moved[:, one.target.compared] - own.z
+    (r, old), (_, new) = own.pull.rows(own.slopes), own.pull.rows(np.array([way, 1j * way]))
     across = np.linalg.qr(old[0])[0]
     new = new - across @ (across.T @ new)
     normal = np.swapaxes(new, 1, 2) @ new
@@ -499,38 +493,94 @@ def _traced(one: _RefinedDesigns) -> tuple[Number, Number, Number, Number]:
     return z[:, at], np.concatenate([by, by_window])[:, :, at], by_crank[:, at], clear
 
 
-def _residuals(one: _RefinedDesigns, early: bool) -> tuple[Number, Number, Number]:
-    """Return residuals (designs, n), slopes (designs, n, numbers) and which designs are clear."""
-    target = one.target
+class _Pull(NamedTuple):
+    """What poses of curves are held to: a sum of squares of each design, by displacements of its poses.
+
+    A displacement v of a pose counts ``even |v|^2 - Re(odd conj(v)^2)``, a square across and one along a direction: all
+    places that hold a pose together. `even`, `odd` and `toward`, half of the slope of the sum, are (designs, poses),
+    `cost` is the sum as it is (designs,).
+    """
+
+    even: Number
+    odd: Number
+    toward: Number
+    cost: Number
+
+    def seen_from(self, scale: Number) -> _Pull:
+        """Return it for displacements of designs before these are laid by a scale (designs, 1)."""
+        return _Pull(self.even * np.abs(scale) ** 2, self.odd * np.conj(scale) ** 2, self.toward * np.conj(scale),
+                     self.cost)  # fmt: skip
+
+    def rows(self, slopes: Number) -> tuple[Number, Number]:
+        """Return residuals (designs, 2 poses + 1), two at each pose and one that no step changes, and their slopes.
+
+        Slopes are (designs, 2 poses + 1, numbers), by those of poses (numbers, designs, poses): rows of the factor of
+        Cholesky of the squares at each pose.
+        """
+        first, size = np.sqrt(self.even - self.odd.real), np.abs(self.odd)
+        aside, second = -self.odd.imag / first, np.sqrt((self.even - size) * (self.even + size)) / first
+        one = self.toward.real / first
+        two = (self.toward.imag - aside * one) / second
+        least = self.cost - (one**2).sum(axis=1) - (two**2).sum(axis=1)
+        numbers, designs, poses = slopes.shape
+        steep = np.zeros((designs, numbers, 2 * poses + 1))
+        x, y = np.swapaxes(slopes.real, 0, 1), np.swapaxes(slopes.imag, 0, 1)
+        np.multiply(x, first[:, None], out=steep[:, :, :poses])
+        steep[:, :, :poses] += y * aside[:, None]
+        np.multiply(y, second[:, None], out=steep[:, :, poses:-1])
+        r = np.concatenate([one, two, np.sqrt(np.maximum(least, 0.0))[:, None]], axis=1)
+        return r, np.swapaxes(steep, 1, 2)
+
+
+class _Compared(NamedTuple):
+    """Designs that are compared with their target before they are laid: poses `z`, slopes by all unknowns.
+
+    `slopes` are (numbers, designs, poses); `clear` are those that are clear of limits, the others mean nothing.
+    """
+
+    z: Number
+    slopes: Number
+    pull: _Pull
+    clear: Number
+
+
+def _compared(one: _RefinedDesigns, early: bool) -> _Compared:
+    """Return designs beside their target."""
     z, by, by_crank, clear = _traced(one)
     if not clear.all():  # what is not clear means nothing, and is not taken
         z, by, by_crank = (np.where(clear[:, None], each, 1.0) for each in (z, by, by_crank))
     scale, place = (each[:, None] for each in _scale_and_place(one.x))
-    turned, places = scale * z, target.seen(one.mirrored)
-    w = turned + place
-    slopes = np.concatenate([scale * by, np.array([turned, 1j * turned, np.ones_like(w), np.full_like(w, 1j)])])
+    w, still = scale * z + place, np.zeros(z.shape)
+    slopes = np.concatenate([by, np.array([z, 1j * z, still + 1.0 / scale, still + 1j / scale])])
+    places = one.target.seen(one.mirrored)
     if early:
-        at = _by_arc(w, places, target.closed)
-        return *_plane(w - places[np.arange(len(w))[:, None], at], slopes), clear
-    return *_gaps(w, scale * by_crank, slopes, places, target), clear
+        pull = _held_at(w, places[np.arange(len(w))[:, None], _by_arc(w, places, one.target.closed)], 1.0)
+    elif one.target.timing is not None:  # they count as much as poses and places without timing do
+        pull = _held_at(w, places, 2.0 * POSES / places.shape[1])
+    else:
+        pull = _held_across(w, scale * by_crank, places, one.target.closed)
+    return _Compared(z, slopes, pull.seen_from(scale), clear)
 
 
-def _plane(gaps: Number, slopes: Number) -> tuple[Number, Number]:
-    """Return complex residuals (designs, n) and their slopes (numbers, designs, n) as real ones."""
-    steep = np.concatenate([slopes.real, slopes.imag], axis=2)
-    return np.concatenate([gaps.real, gaps.imag], axis=1), np.moveaxis(steep, 0, 2)
+def _residuals(one: _RefinedDesigns, early: bool) -> tuple[Number, Number, Number]:
+    """Return residuals (designs, n), slopes (designs, n, numbers) and which designs are clear."""
+    found = _compared(one, early)
+    return *found.pull.rows(found.slopes), found.clear
 
 
-def _gaps(w: Number, tangent: Number, slopes: Number, places: Number, target: CurveTarget) -> tuple[Number, Number]:
-    """Return residuals (designs, n) of curves to the nearest places, and their slopes (designs, n, numbers).
+def _held_at(w: Number, places: Number, counted: float) -> _Pull:
+    """Return how curves are held to places, (designs, poses), pose by pose."""
+    gaps, still = w - places, np.zeros(w.shape)
+    return _Pull(still + counted, still + 0j, counted * gaps, counted * (np.abs(gaps) ** 2).sum(axis=1))
 
-    `places` are the target's for each design, (designs, places); with timing each is held against its own pose.
+
+def _held_across(w: Number, tangent: Number, places: Number, closed: bool) -> _Pull:
+    """Return how curves with tangents are held to the nearest places, and these to the nearest poses.
+
+    `places` are the target's for each design, (designs, places).
     """
-    if target.timing is not None:  # they count as much as poses and places without timing do
-        counted = float(np.sqrt(2.0 * POSES / places.shape[1]))
-        return _plane(counted * (w - places), counted * slopes)
-    length = _lengths(w, target.closed)
-    if target.closed:
+    length = _lengths(w, closed)
+    if closed:
         weight, ahead = length + np.roll(length, 1, 1), np.roll(places, -1, 1) - np.roll(places, 1, 1)
     else:
         weight, ahead = np.zeros(w.shape), np.gradient(places, axis=1)
@@ -538,24 +588,38 @@ def _gaps(w: Number, tangent: Number, slopes: Number, places: Number, target: Cu
         weight[:, :-1] += length
     rows, at, nearest = np.arange(len(w))[:, None], _nearest_places(places, w), _nearest_places(w, places)
     # each pose counts by its part of the arc, as if they lay evenly along it
-    share = np.sqrt(weight / (2.0 * length.sum(axis=1, keepdims=True)) * POSES)
-    parts, steeps = list[Number](), list[Number]()
-    for own, t, slope, counted in (
-        (w[rows, at] - places, tangent[rows, at], slopes[:, rows, at], 1.0),
-        (w - places[rows, nearest], ahead[rows, nearest], slopes, share),
-    ):
-        across = counted * np.conj(t) / (np.abs(t) + NO_LENGTH)
-        turned_r, turned_j = own * across, slope * across
-        parts += [turned_r.imag, ALONG * turned_r.real]
-        steeps += [turned_j.imag, ALONG * turned_j.real]
-    if not target.closed:  # the ends of what is traced are held at those of the target
-        ends = w[:, [0, -1]]
-        gaps = ends - places[:, [0, -1]], ends - places[:, [-1, 0]]
-        forth = np.abs(gaps[0]).sum(axis=1) <= np.abs(gaps[1]).sum(axis=1)
-        own, slope = ENDS * np.where(forth[:, None], *gaps), ENDS * slopes[:, :, [0, -1]]
-        parts += [own.real, own.imag]
-        steeps += [slope.real, slope.imag]
-    return np.concatenate(parts, axis=1), np.moveaxis(np.concatenate(steeps, axis=2), 0, 2)
+    share = weight * (POSES / (2.0 * length.sum(axis=1, keepdims=True)))
+    across, own = _squared_direction(tangent), w - places[rows, nearest]
+    beside = _squared_direction(ahead[rows, nearest])
+    # places that are nearest to one pose: how many, and their gaps to it together
+    gaps, many = w[rows, at] - places, w.size
+    held = (at + w.shape[1] * rows).ravel()
+    parts = (None, gaps.real.ravel(), gaps.imag.ravel())
+    count, x, y = (np.bincount(held, each, many).reshape(w.shape) for each in parts)
+    together = x + 1j * y
+    along = ALONG**2
+    even, odd = (1.0 + along) / 2.0, (1.0 - along) / 2.0
+    pull = _Pull(
+        even * (count + share),
+        odd * (count * across + share * beside),
+        even * (together + share * own) - odd * (across * np.conj(together) + share * beside * np.conj(own)),
+        (even * np.abs(gaps) ** 2 - odd * (across[rows, at] * np.conj(gaps) ** 2).real).sum(axis=1)
+        + (share * (even * np.abs(own) ** 2 - odd * (beside * np.conj(own) ** 2).real)).sum(axis=1),
+    )
+    if closed:
+        return pull
+    # the ends of what is traced are held at those of the target
+    ends, both = w[:, [0, -1]], (places[:, [0, -1]], places[:, [-1, 0]])
+    forth, back = (ends - each for each in both)
+    own = ENDS**2 * np.where((np.abs(forth).sum(axis=1) <= np.abs(back).sum(axis=1))[:, None], forth, back)
+    pull.even[:, [0, -1]] += ENDS**2
+    pull.toward[:, [0, -1]] += own
+    return pull._replace(cost=pull.cost + (np.abs(own) ** 2).sum(axis=1) / ENDS**2)
+
+
+def _squared_direction(way: Number) -> Number:
+    """Return squares of vectors of length one, or less where there is none."""
+    return (way / (np.abs(way) + NO_LENGTH)) ** 2
 
 
 def _nearest_places(w: Number, places: Number) -> Number:

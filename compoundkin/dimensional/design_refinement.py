@@ -2,7 +2,9 @@
 
 Whoever follows a curve, a function or a motion has residuals of his own; how they are lowered is the same for all. The
 steps are those of K. Levenberg, A method for the solution of certain non-linear problems in least squares, Q. Appl.
-Math. 2 (1944) 164-168, with the diagonal in place of the unit matrix (D. W. Marquardt, J. SIAM 11 (1963) 431-441).
+Math. 2 (1944) 164-168, with the diagonal in place of the unit matrix (D. W. Marquardt, J. SIAM 11 (1963) 431-441), and
+with a weight that follows how well a step was foreseen (H. B. Nielsen, Damping parameter in Marquardt's method,
+IMM-REP-1999-05).
 """
 
 from __future__ import annotations
@@ -22,8 +24,10 @@ from compoundkin.dimensional.curve_chains import CurveChain
 from compoundkin.dimensional.defects import Rejection, SolvedLinkage, judged
 from compoundkin.dimensional.tasks import Task
 
-# The weight of Levenberg's term at first, how it shrinks and grows, its least, and where a design is given up.
-FIRST, EASIER, HARDER, LEAST, HOPELESS = 1e-2, 0.3, 4.0, 1e-7, 1e5
+# The weight of Levenberg's term at first, its least, and where a design is given up; by which factor it shrinks at
+# most, and grows at first, twice as much after each failure more.
+FIRST, LEAST, HOPELESS = 1e-2, 1e-7, 1e5
+EASIER, HARDER = 1.0 / 3.0, 2.0
 # No number goes farther in a step; a step that gains less than is asked for makes the next so much harder.
 FARTHEST, SLOWER = 0.5, 30.0
 # Added to the diagonal of the normal equations, in parts of its greatest entry: sizes, and begins, may be free.
@@ -39,7 +43,9 @@ GIVEN, OF_A_KIND, LOOKED_AT, ALIKE = 8, 3, 60, 0.1
 Residuals: TypeAlias = Callable[[Number, Number], tuple[Number, Number, Number]]
 
 
-def levenberg_steps(r: Number, j: Number, damping: Number, floor: float, *, of_greatest: bool = False) -> tuple[Number, Number]:
+def levenberg_steps(
+    r: Number, j: Number, damping: Number, floor: float, *, of_greatest: bool = False
+) -> tuple[Number, Number]:
     """Return the steps (designs, numbers) that residuals (designs, n) with slopes (designs, n, numbers) ask for.
 
     And by how much they lower the sums of squares, (designs,), as far as slopes can tell.
@@ -71,13 +77,14 @@ def refined(
     """Return unknowns of many designs, (designs, numbers), after so many of Levenberg's steps, and sums of squares.
 
     No step is taken to what is not clear, nor from where a condition `holds` (of unknowns of some rows) to where it
-    does not. A step that gains less than the part `settled` counts as a failed one. For `floor` see `levenberg_steps`.
+    does not. A step that gains less than the part `settled` counts as a failed one, and a design that foresees no more
+    has ended. For `floor` see `levenberg_steps`.
     """
     x, rows = x.copy(), np.arange(len(x))
     r, j, clear = residuals(x, rows)
     cost = np.where(clear, (r**2).sum(axis=1), np.inf)
     held = np.ones(len(x), bool) if holds is None else holds(x, rows)
-    damping = np.where(clear, FIRST, 2.0 * HOPELESS)
+    damping, growth = np.where(clear, FIRST, 2.0 * HOPELESS), np.full(len(x), HARDER)
     for _ in range(steps):
         alive = np.flatnonzero(damping < HOPELESS)
         if not len(alive):
@@ -86,7 +93,7 @@ def refined(
         if settled:
             goes_on = foreseen > settled * cost[alive]
             damping[alive[~goes_on]] = 2.0 * HOPELESS
-            alive, step = alive[goes_on], step[goes_on]
+            alive, step, foreseen = alive[goes_on], step[goes_on], foreseen[goes_on]
             if not len(alive):
                 continue
         ahead = x[alive] - np.clip(step, -FARTHEST, FARTHEST)
@@ -100,9 +107,12 @@ def refined(
             held[alive[better]] = now[kept]
         to = alive[better]
         gain = 1.0 - costs[better] / cost[to]
+        part = (cost[to] - costs[better]) / np.maximum(foreseen[better], np.finfo(float).tiny)
         x[to], r[to], j[to], cost[to] = ahead[better], tried[better], steep[better], costs[better]
-        factor = np.full(len(alive), HARDER)
-        factor[better] = EASIER
+        factor = growth[alive]
+        factor[better] = np.maximum(EASIER, 1.0 - (2.0 * np.minimum(part, 1.5) - 1.0) ** 3)
+        growth[alive] *= 2.0
+        growth[to] = HARDER
         damping[alive] = np.clip(damping[alive] * factor, LEAST, 2.0 * HOPELESS)
         damping[to[gain < settled]] *= SLOWER
     return x, cost
