@@ -5,7 +5,7 @@ Each number stands where it covers least of what is drawn.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -39,6 +39,9 @@ SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
 OFFSETS = (0.0, 6.0, 13.0, 22.0)
 # Arcs of angles have these radii.
 RADII = (26.0, 36.0, 48.0, 62.0)
+# A number that stands aside is so far away, in these directions (radians) from its line's; and costs so much more: as
+# two lines through it.
+AWAY, TURNED, LED = (26.0, 40.0, 58.0, 80.0, 108.0), (0.0, 0.5, -0.5, 1.0, -1.0), 24.0
 # An arc is a line through so many points.
 ON_ARC = 13
 # The radius of a wheel is drawn in one of so many directions.
@@ -100,7 +103,7 @@ def one_of_equals(dimensions: Sequence[Dimension]) -> list[Dimension]:
             found += ones
         else:
             places = tuple(place for one in ones for place in one.places)
-            found.append(Dimension(f"{len(ones)}× {text}", places, all(one.is_short for one in ones)))
+            found.append(Dimension(f"{len(ones)}× {text}", places, all(one.is_short for one in ones), ones[0].aside))
     return found
 
 
@@ -163,7 +166,8 @@ def length_dimension(
                 places.append(
                     DimensionPlace(at, e, 1.2 * off + 14.0 * abs(share - 0.5) + (side > 0) + beyond / 10.0, shapes)
                 )
-    return Dimension(text, tuple(places), beyond > 0.0)
+    ways = [(a + (b - a) * share, side * across) for share in (0.5, 0.3, 0.7) for side in (-1.0, 1.0)]
+    return Dimension(text, tuple(places), beyond > 0.0, tuple(_led(text, ways, shapes)))
 
 
 def angle_dimension(painter: Painter, at: complex, one: complex, other: complex) -> Iterator[Dimension]:
@@ -176,19 +180,38 @@ def angle_dimension(painter: Painter, at: complex, one: complex, other: complex)
         places: list[DimensionPlace] = []
         for k, radius in enumerate(RADII):
             places += _on_arc(text, at, first, angle, min(radius, reach + 8.0 * k), 4.0 * k)
-        yield Dimension(text, tuple(places))
+        e, radius = complex(first * np.exp(0.5j * angle)), min(RADII[0], reach)
+        aside = _led(text, [(at + e * radius, e)], _arc(at, first, angle, radius))
+        yield Dimension(text, tuple(places), aside=tuple(aside))
+
+
+def _led(text: str, ways: Iterable[tuple[complex, complex]], shapes: tuple[Shape, ...]) -> Iterator[DimensionPlace]:
+    """The places of a number that stands aside, level, at the end of a thin line from where it belongs, each way."""
+    for start, way in ways:
+        for turn in TURNED:
+            e = unit_direction(way) * complex(np.exp(1j * turn))
+            for away in AWAY:
+                end = start + e * away
+                at = end + e.real * (text_width(text) / 2.0 + 2.0) + 1j * e.imag * 7.0
+                leader = Polyline((start, end), "dimension")
+                yield DimensionPlace(at, 1.0, LED + away / 5.0 + 4.0 * abs(turn), (*shapes, leader), (start, end))
+
+
+def _arc(at: complex, first: complex, angle: float, radius: float) -> tuple[Shape, ...]:
+    """The arc of an angle with its heads."""
+    arc = [complex(p) for p in at + radius * first * np.exp(1j * angle * np.linspace(0.0, 1.0, ON_ARC))]
+    return (
+        Polyline(tuple(arc), "dimension"),
+        arrow_head(arc[-1], arc[-1] - arc[-2], "dimension-head", HEAD),
+        arrow_head(arc[0], arc[0] - arc[1], "dimension-head", HEAD),
+    )
 
 
 def _on_arc(
     text: str, at: complex, first: complex, angle: float, radius: float, cost: float
 ) -> Iterator[DimensionPlace]:
     """The places of an angle's number outside and inside its arc, and beside it."""
-    arc = [complex(p) for p in at + radius * first * np.exp(1j * angle * np.linspace(0.0, 1.0, ON_ARC))]
-    drawn = (
-        Polyline(tuple(arc), "dimension"),
-        arrow_head(arc[-1], arc[-1] - arc[-2], "dimension-head", HEAD),
-        arrow_head(arc[0], arc[0] - arc[1], "dimension-head", HEAD),
-    )
+    drawn = _arc(at, first, angle, radius)
     for turn, more in ((0.5, 0.0), (0.3, 3.0), (0.7, 3.0)):
         e = complex(first * np.exp(1j * angle * turn))
         half = abs(e.real) * text_width(text) / 2.0 + abs(e.imag) * 5.0
@@ -411,23 +434,28 @@ HEAD = 0.62
 
 
 class DimensionPlace(NamedTuple):
-    """A place of a dimension. It has the middle of its number, its direction, what it costs and what is drawn."""
+    """A place of a dimension. It has the middle of its number, its direction, what it costs and what is drawn.
+
+    The line that leads to a number aside is clear of labels and numbers, as the number is.
+    """
 
     at: complex
     along: complex
     cost: float
     shapes: tuple[Shape, ...] = ()
+    leader: tuple[complex, complex] | None = None
 
 
 class Dimension(NamedTuple):
     """A dimension, its number and its places. They are in the order of preference.
 
-    It is short where its number is longer than its line.
+    It is short where its number is longer than its line. Places `aside` are for numbers that have no room else.
     """
 
     text: str
     places: tuple[DimensionPlace, ...]
     is_short: bool = False
+    aside: tuple[DimensionPlace, ...] = ()
 
 
 def number_text(value: float, unit: str, *, is_angle: bool = False) -> str:
@@ -465,45 +493,92 @@ def placed_dimensions(
     dimensions: Sequence[Dimension], lines: Number, boxes: Sequence[tuple[complex, complex]], window: Window
 ) -> list[DimensionPlace]:
     """Return a place for each dimension. It is off lines (count, 2) and boxes (middle, half), if that is possible."""
-    discs = [[_discs(place, dimension.text) for place in dimension.places] for dimension in dimensions]
-    every = [np.array(of_one) for of_one in discs]
-    fixed = [_fixed(d, at, lines, boxes, window) for d, at in zip(dimensions, every, strict=True)]
-    chosen: dict[int, int] = {}
+    tried = [one.places for one in dimensions]
+    chosen, costs = _least(dimensions, tried, lines, boxes, window)
+    if any(cost > LED for cost in costs):
+        tried = [
+            (*one.places, *one.aside) if cost > LED else (one.places[k],)
+            for one, k, cost in zip(dimensions, chosen, costs, strict=True)
+        ]
+        begun = [k if cost > LED else 0 for k, cost in zip(chosen, costs, strict=True)]
+        chosen, _ = _least(dimensions, tried, lines, boxes, window, begun)
+    return [places[k] for places, k in zip(tried, chosen, strict=True)]
+
+
+def _least(
+    dimensions: Sequence[Dimension],
+    tried: Sequence[Sequence[DimensionPlace]],
+    lines: Number,
+    boxes: Sequence[tuple[complex, complex]],
+    window: Window,
+    begun: Sequence[int] = (),
+) -> tuple[list[int], list[float]]:
+    """Return which of the places that are tried costs least for each dimension, and what; one after another, again."""
+    every = [
+        _rows_of([_discs(place, one.text) for place in places]) for one, places in zip(dimensions, tried, strict=True)
+    ]
+    # a thin line may cross others, which a number may not cover
+    numbers = [at[:, : _count(one.text)] for one, at in zip(dimensions, every, strict=True)]
+    fixed = [
+        _on_lines(number, lines) + _fixed(places, at, boxes, window)
+        for places, at, number in zip(tried, every, numbers, strict=True)
+    ]
+    chosen, least = dict(enumerate(begun)), [0.0] * len(every)
     for _ in range(1 + ROUNDS):
         for k, at in enumerate(every):
             others = [every[j][i] for j, i in chosen.items() if j != k]
             costs = fixed[k]
             if others:
-                gap = np.abs(at[:, :, None] - np.concatenate(others))
-                costs = (
-                    costs
-                    + LABEL * (gap < 2.0 * HALF).any(axis=(1, 2))
-                    + LABEL / 10.0 * (gap < 2.0 * HALF).sum(axis=(1, 2))
-                )
+                near = np.abs(at[:, :, None] - np.concatenate(others)) < 2.0 * HALF
+                costs = costs + LABEL * near.any(axis=(1, 2)) + LABEL / 10.0 * near.sum(axis=(1, 2))
             chosen[k] = int(np.argmin(np.round(costs, DIGITS)))
-    return [dimension.places[chosen[k]] for k, dimension in enumerate(dimensions)]
+            least[k] = float(costs[chosen[k]])
+    return [chosen[k] for k in range(len(every))], least
 
 
 def _discs(place: DimensionPlace, text: str) -> Number:
-    """Middles of discs that cover the number at a place."""
+    """Middles of discs that cover the number at a place, and the line that leads there beside where it begins."""
     reach = max(0.0, text_width(text) / 2.0 - HALF)
-    return place.at + unit_direction(place.along) * np.linspace(-reach, reach, max(2, int(np.ceil(reach / HALF)) + 1))
+    found = place.at + unit_direction(place.along) * np.linspace(-reach, reach, _count(text))
+    if place.leader is None:
+        return found
+    start, end = place.leader
+    count = max(1, int((abs(end - start) - BESIDE) / HALF))
+    return np.append(found, end + (start - end) * np.arange(count) * HALF / abs(end - start))
+
+
+def _count(text: str) -> int:
+    """How many discs cover a number."""
+    return max(2, int(np.ceil(max(0.0, text_width(text) / 2.0 - HALF) / HALF)) + 1)
+
+
+def _rows_of(discs: Sequence[Number]) -> Number:
+    """Return rows of different lengths as one array, with NaN, which is near nothing, after the shorter ones."""
+    found = np.full((len(discs), max(map(len, discs))), complex(np.nan, np.nan))
+    for row, one in zip(found, discs, strict=True):
+        row[: len(one)] = one
+    return found
+
+
+def _on_lines(at: Number, lines: Number) -> Number:
+    """The costs of numbers by the lines that they cover."""
+    if not len(lines):
+        return np.zeros(len(at))
+    near = distances(at.ravel(), lines).reshape(*at.shape, -1) < HALF
+    return LINE * near.any(axis=1).sum(axis=1) + LINE / 2.0 * near.sum(axis=(1, 2))
 
 
 def _fixed(
-    dimension: Dimension, at: Number, lines: Number, boxes: Sequence[tuple[complex, complex]], window: Window
+    places: Sequence[DimensionPlace], at: Number, boxes: Sequence[tuple[complex, complex]], window: Window
 ) -> Number:
-    """The costs of places by the shapes and labels there."""
-    costs = np.array([place.cost for place in dimension.places])
-    if len(lines):
-        near = distances(at.ravel(), lines).reshape(*at.shape, -1) < HALF
-        costs = costs + LINE * near.any(axis=1).sum(axis=1) + LINE / 2.0 * near.sum(axis=(1, 2))
+    """The costs of places by themselves, and by the labels there."""
+    costs = np.array([place.cost for place in places])
     for middle, half in boxes:
         gap = at - middle
         covered = (np.abs(gap.real) < half.real + HALF) & (np.abs(gap.imag) < half.imag + HALF)
         costs = costs + LABEL * covered.any(axis=1)
-    outside = np.maximum(0.0, HALF - at.real) + np.maximum(0.0, at.real + HALF - window.width)
-    outside += np.maximum(0.0, HALF - at.imag) + np.maximum(0.0, at.imag + HALF - window.height)
+    outside = np.fmax(0.0, HALF - at.real) + np.fmax(0.0, at.real + HALF - window.width)
+    outside += np.fmax(0.0, HALF - at.imag) + np.fmax(0.0, at.imag + HALF - window.height)
     return costs + EDGE * outside.sum(axis=1)
 
 

@@ -195,7 +195,10 @@ def test_numbers_far_from_one_have_powers_of_ten(factor: float, power: str) -> N
     }
 
 
-@pytest.mark.parametrize("name", ["six-bar", "3-rrr", "andrews-squeezer", "jansen-leg", "roberts-cognates", "watt-ii"])
+CROWDED = ("six-bar", "3-rrr", "andrews-squeezer", "jansen-leg", "roberts-cognates", "watt-ii")
+
+
+@pytest.mark.parametrize("name", [*CROWDED, "double-parallelogram-lift"])
 def test_numbers_are_off_each_other_and_on_the_picture(name: str) -> None:
     picture = ck.draw(mechanism(name), dimensions=True)
     covers = []
@@ -207,6 +210,19 @@ def test_numbers_are_off_each_other_and_on_the_picture(name: str) -> None:
     for k, one in enumerate(covers):
         for other in covers[:k]:
             assert np.abs(np.subtract.outer(one, other)).min() > 7.0
+
+
+def test_a_number_without_room_stands_aside_at_the_end_of_a_line() -> None:
+    """The crusher's eccentric is shorter than its number, between a pivot, a pin and an arrow."""
+    picture = ck.draw(mechanism("jaw-crusher-loaded"), dimensions=True)
+    (number,) = (shape for shape in numbers(picture) if shape.text == "20 mm")
+    half = text_half(number.text, SMALL)
+    lines = [s.points for s in leaves(picture.shapes) if isinstance(s, Polyline) and s.style == "dimension"]
+    leaders = [line for line in lines if len(line) == 2 and abs(line[1] - number.at) < half.real + 12.0]
+    assert len(leaders) == 1
+    bars = [dense(s.points) for s in leaves(picture.shapes) if isinstance(s, Polyline) and s.style.startswith("bar")]
+    gap = np.concatenate(bars) - number.at
+    assert not np.any((np.abs(gap.real) < half.real) & (np.abs(gap.imag) < half.imag))
 
 
 def test_plates_have_two_sides_and_an_angle() -> None:
