@@ -8,16 +8,17 @@ import re
 from collections.abc import Mapping, Sequence
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, Problem, UnknownName, suggestion
-from compoundkin.files import toml_text
 from compoundkin.files.parsed_document import Syntax, known_syntax, located, parsed, text_of, too_deep, unreadable
 from compoundkin.files.reader import read
 from compoundkin.files.shipped_mechanisms import resolve
-from compoundkin.files.writer import document
 from compoundkin.model.mechanism import Mechanism
+
+if TYPE_CHECKING:
+    from compoundkin.files import toml_text
 
 
 @checked
@@ -69,12 +70,17 @@ def dumps(mechanism: Mechanism, syntax: Syntax = "toml") -> str:
     points = { A = [0, 0.5] }
     <BLANKLINE>
     """
+    # late, as what writes is not needed to read
+    from compoundkin.files.writer import document
+
     return written_text(document(mechanism), syntax)
 
 
 def written_text(whole: Mapping[str, Any], syntax: Syntax) -> str:
     """Return the text of a document."""
     if known_syntax(syntax) == "toml":
+        from compoundkin.files import toml_text
+
         return toml_text.dumps(whole)
     return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
 
@@ -95,6 +101,8 @@ def changed_text(text: str, changes: Mapping[str, str], syntax: Syntax = "toml",
     [links.frame]
     points = { A = [0, 6.5] }  # mm
     """
+    from compoundkin.files import toml_text
+
     syntax = known_syntax(syntax)
     wanted, written = parsed(text, syntax, where), dict[toml_text.Way, str]()
     for name, value in changes.items():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tomllib
-from difflib import get_close_matches
 from functools import cache
 from os import PathLike, fspath
 from os.path import isfile
@@ -95,6 +94,8 @@ def titles(word: str = "") -> dict[str, str]:
 
 def _meant(text: str) -> str:
     """Return the remedy for a name that the catalog does not have: those with the word, or the closest."""
+    from difflib import get_close_matches
+
     if ":" in text:
         name, _, lengths = text.partition(":")
         made = f"compoundkin.linkages.{name.strip().replace('-', '_')}({lengths.strip()})"
