@@ -16,6 +16,7 @@ from typing import Any
 
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.model.geometry import FRAME
+from compoundkin.model.units import LENGTHS
 from compoundkin.studio.edited_document import (
     DIGITS,
     LINK_KEYS,
@@ -491,6 +492,20 @@ def _call(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
     return {"link": new}
 
 
+def _unit(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
+    """Give all lengths a unit, or none; the numbers stay as they are."""
+    unit = word_in(edit, "unit").strip()
+    if unit and unit not in LENGTHS:
+        raise refused(f"{unit!r} is no unit of length that is known", f"choose one of {', '.join(LENGTHS)}")
+    if "units" in sheet.document:
+        raise refused("a table of units is there, of masses and forces too", "change it in the text")
+    if unit:
+        sheet.document["unit"] = unit
+    else:
+        sheet.document.pop("unit", None)
+    return {}
+
+
 # What can be done, by its word in a question.
 EDITS: Mapping[str, Callable[[EditedDocument, Edit], dict[str, Any]]] = MappingProxyType(
     {
@@ -513,6 +528,7 @@ EDITS: Mapping[str, Callable[[EditedDocument, Edit], dict[str, Any]]] = MappingP
         "cam": cam_pair,
         "delete": _delete,
         "call": _call,
+        "unit": _unit,
         "all": _all,
     }
 )

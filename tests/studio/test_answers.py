@@ -393,6 +393,16 @@ def test_a_document_in_json_stays_one() -> None:
     assert loads(text, "json").pins["B"] == ("bar1", "bar2")
 
 
+def test_a_drawing_gets_a_unit_and_loses_it_again() -> None:
+    text = edited(START, *FOUR_BAR)
+    inches = edited(text, {"do": "unit", "unit": "in"})
+    assert (loads(inches).unit, structure(inches)["unit"]) == ("in", "in")
+    assert lengths(inches) == lengths(text)
+    assert edited(inches, {"do": "unit", "unit": ""}) == text
+    assert "no unit of length" in refused(text, do="unit", unit="parsec")
+    assert "masses and forces" in refused(shipped_text("andrews-squeezer-dynamics"), do="unit", unit="cm")
+
+
 CRANE = (
     {"do": "bar", "from": {"at": [0, 0]}, "to": {"at": [100, 60]}},
     {"do": "ground", "point": "A"},

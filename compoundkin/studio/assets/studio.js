@@ -407,8 +407,9 @@ export class Studio {
     on("open", () => this.results.open());
     on("copy", () => this.results.copy());
     on("export", () => this.results.exports());
+    on("unit", () => this.gestures.unit());
     on("more", () => this.#more(this.part("more").getAttribute("aria-expanded") !== "true"));
-    for (const one of ["open", "copy", "export"]) on(one, () => this.#more(false));
+    for (const one of ["open", "copy", "export", "unit"]) on(one, () => this.#more(false));
     on("fit", () => this.canvas.fit());
     on("play", () => this.play());
     on("home", () => { this.halt(); this.canvas.pose = null; this.canvas.draw(); this.#driver(); });

@@ -72,6 +72,23 @@ def test_files_are_opened_and_exported(window: Any, tmp_path: Path) -> None:
     assert seen.complaints == []
 
 
+@pytest.mark.full
+def test_a_drawing_gets_its_unit(window: Any) -> None:
+    seen = window(shipped_text("six-bar").replace('unit = "mm"\n', "", 1))
+    view = seen.view
+    if not view.locator("#unit").is_visible():
+        view.locator("#more").click()
+    view.locator("#unit").click()
+    view.locator("dialog select").select_option("in")
+    view.get_by_role("button", name="Do it").click()
+    seen.until("studio.isSettled && studio.unit === 'in'")
+    assert loads(seen.text).unit == "in"
+    view.locator("#undo").click()
+    seen.settle()
+    assert seen.value("studio.unit") == ""
+    assert seen.complaints == []
+
+
 def test_dimensions_change_in_the_browser_alone(window: Any) -> None:
     """What is typed is seen before anything is sent, and is what Python then solves; dragged points take paths."""
     seen = window(shipped_text("six-bar"))
