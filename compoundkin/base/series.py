@@ -25,6 +25,7 @@ from compoundkin.base.arrays import (
     convolution,
     cross,
     dot,
+    first_entry,
     is_number,
     negative,
     real_product,
@@ -212,6 +213,15 @@ def constant(value: Number) -> Series:
 def as_series(value: Series | Number) -> Series:
     """Return a number as a constant, a series as it is."""
     return value if isinstance(value, Series) else Series((value,))
+
+
+def first_number(value: Series | Number | None) -> Number:
+    """Return the first entry of a number, an array, or a constant series; None where there is none.
+
+    >>> first_number(Series((np.array([[1.0], [2.0]]),))), first_number(None)
+    (np.float64(1.0), None)
+    """
+    return None if value is None else first_entry(value.c[0] if isinstance(value, Series) else value)
 
 
 def _coefficients(value: Series | Number) -> tuple[Number, ...]:

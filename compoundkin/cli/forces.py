@@ -102,11 +102,7 @@ def command(
         if excluded := next((name for name, given in others.items() if given), ""):
             raise InvalidInput(Problem("--strength", f"it does not go with {excluded}", "leave one of them out"))
         return _strength(file, path, statics, holding, options)
-    if unused := next((name for name in OF_STRENGTH if options[name]), ""):
-        raise InvalidInput(Problem(f"--{unused.removesuffix('s')}", "it concerns bars", "give --strength too"))
-    if on and sheet:
-        raise InvalidInput(Problem("--sheet", f"it has all links, --on {on} one", "leave one of them out"))
-    report = "--sheet" if sheet else f"--on {on}" if on else ""
+    report = _report_name(on, sheet, options)
     tabulated = is_table(path, form, "--output" if options["outputs"] else "", report)
     structure = solvable_structure(
         file, form, path if not tabulated else None, lambda own: typed_values.with_loads(own, options)
@@ -170,6 +166,15 @@ def size_command(
 
         put_picture(motor_curves(found, motor), path)
     return 0 if found.chosen else 1
+
+
+def _report_name(on: str, sheet: bool, options: Mapping[str, Any]) -> str:
+    """Return the option that asks for another report. Raises InvalidInput for what does not go with it."""
+    if unused := next((name for name in OF_STRENGTH if options[name]), ""):
+        raise InvalidInput(Problem(f"--{unused.removesuffix('s')}", "it concerns bars", "give --strength too"))
+    if on and sheet:
+        raise InvalidInput(Problem("--sheet", f"it has all links, --on {on} one", "leave one of them out"))
+    return "--sheet" if sheet else f"--on {on}" if on else ""
 
 
 def _strength(file: str, path: str | None, statics: bool, holding: str, options: dict[str, Any]) -> int:

@@ -51,7 +51,7 @@ def command(file: str, no_browser: bool) -> int:
     server listens on this machine alone and ends with Ctrl-C. Needs the extra `studio`.
     """
     uvicorn = _server_library()
-    from compoundkin.studio.server import HOST, MOST_BYTES, StudioServer
+    from compoundkin.studio.server import HOST, StudioServer
 
     path, text = opened(file)
     # bound here, so that the port is known and nobody else has it
@@ -66,15 +66,8 @@ def command(file: str, no_browser: bool) -> int:
     served.start()
     if not no_browser:
         threading.Thread(target=_open_browser, args=(address,), daemon=True).start()
-    settings = {"http": "h11", "ws": "websockets-sansio", "lifespan": "off", "log_level": "critical"}
-    limits = {"ws_max_size": MOST_BYTES, "ws_ping_interval": None, "limit_concurrency": 100, "timeout_keep_alive": 5}
-    server = uvicorn.Server(
-        uvicorn.Config(served.application(), access_log=False, server_header=False, **settings, **limits)
-    )
-    # signals are those of the command line
-    server.capture_signals = nullcontext
     try:
-        asyncio.run(_serve(server, listener, served))
+        asyncio.run(_serve(_server_of(uvicorn, served), listener, served))
     except KeyboardInterrupt:
         say("The studio has ended.")
     finally:
@@ -83,6 +76,19 @@ def command(file: str, no_browser: bool) -> int:
         if record is not None:
             record.unlink(missing_ok=True)
     return 0
+
+
+def _server_of(uvicorn: Any, served: StudioServer) -> Any:
+    """Return a server of a studio; signals are those of the command line."""
+    from compoundkin.studio.server import MOST_BYTES
+
+    settings = {"http": "h11", "ws": "websockets-sansio", "lifespan": "off", "log_level": "critical"}
+    limits = {"ws_max_size": MOST_BYTES, "ws_ping_interval": None, "limit_concurrency": 100, "timeout_keep_alive": 5}
+    server = uvicorn.Server(
+        uvicorn.Config(served.application(), access_log=False, server_header=False, **settings, **limits)
+    )
+    server.capture_signals = nullcontext
+    return server
 
 
 def _record(path: Path) -> Path | None:

@@ -12,7 +12,7 @@ import numpy as np
 from compoundkin.base.arrays import Number, first_entry
 from compoundkin.base.errors import InvalidInput, NotAssembled, NotDetermined, Problem
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Series
+from compoundkin.base.series import first_number
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.nearest_pose import exactly_drawn, pose_nearest_to_drawing
 from compoundkin.kinematics.solution import quietly_solved
@@ -76,7 +76,7 @@ class PosedMechanism:
         """
         geometry = self.mechanism.geometry
         return {
-            pair.name: tuple(End(*map(_number, end)) for end in pair.ends(geometry))
+            pair.name: tuple(End(*map(first_number, end)) for end in pair.ends(geometry))
             for pair in self.mechanism.written_pairs
         }
 
@@ -120,7 +120,3 @@ def _entry(values: Number, pose: int) -> float:
     """Return a driver's number at a pose; one that is the same at all of them is told once."""
     row = np.ravel(values)
     return float(row[min(pose, row.size - 1)])
-
-
-def _number(value: Any) -> Number:
-    return None if value is None else first_entry(value.c[0] if isinstance(value, Series) else value)

@@ -74,11 +74,14 @@ class Friction(PairProperty):
                 yield Problem(f"{where}.length", "a pin has no guide", "leave the length out")
         elif self.radius is not None:
             yield Problem(f"{where}.radius", f"a {pair.title} has no pin of a radius", "leave the radius out")
-        if self.coefficient is None:
-            if pair is not None and "efficiency" not in pair.takes:
-                what = f"the coefficient of a {pair.title} is missing"
-                yield Problem(f"{where}.coefficient", what, f'friction("{self.pair}", 0.1)')
-        elif np.any(np.asarray(self.coefficient) < 0.0):
+        if self.coefficient is None and pair is not None and "efficiency" not in pair.takes:
+            what = f"the coefficient of a {pair.title} is missing"
+            yield Problem(f"{where}.coefficient", what, f'friction("{self.pair}", 0.1)')
+        yield from self._problems_of_numbers(where)
+
+    def _problems_of_numbers(self, where: str) -> Iterator[Problem]:
+        """Find a negative coefficient, and lengths that are not above zero."""
+        if self.coefficient is not None and np.any(np.asarray(self.coefficient) < 0.0):
             yield Problem(f"{where}.coefficient", "a coefficient of friction is not negative")
         for key, value in (("radius", self.radius), ("length", self.length)):
             if value is not None and not np.all(np.asarray(value) > 0.0):

@@ -18,7 +18,7 @@ from compoundkin.model.prescribed_paths import CurvePath, FunctionPath, LinePath
 from compoundkin.model.units import ANGULAR_VELOCITY, with_customary
 from compoundkin.structure import Structure
 from compoundkin.view.report.report_data import Paragraph
-from compoundkin.view.report.wording import counted, listed, number_text
+from compoundkin.view.report.wording import counted, listed, number_text, range_text
 
 DERIVATIVES = ("coordinate", VELOCITY, ACCELERATION)
 
@@ -106,7 +106,7 @@ class LawText:
 
     def _value(self, value: Any) -> str:
         shown = degrees(value) if self.is_angle else value
-        return with_unit(_range_text(shown), DEGREES if self.is_angle else self.unit)
+        return with_unit(range_text(shown), DEGREES if self.is_angle else self.unit)
 
     def _speed(self, value: Any) -> str:
         """Return a speed, a single one in rpm as well."""
@@ -117,13 +117,7 @@ class LawText:
         )
 
     def _rate(self, value: Any, order: int) -> str:
-        return f"{_range_text(value)} {'rad' if self.is_angle else self.unit}{PER_SECOND[order]}"
-
-
-def _range_text(value: Any) -> str:
-    """A number; of an array of designs the least and the greatest."""
-    low, high = float(np.min(value)), float(np.max(value))
-    return number_text(low) if low == high else f"{number_text(low)} to {number_text(high)}"
+        return f"{range_text(value)} {'rad' if self.is_angle else self.unit}{PER_SECOND[order]}"
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from compoundkin.base.errors import (
     suggestion,
 )
 from compoundkin.base.poses import End, Pose
-from compoundkin.base.series import Series
+from compoundkin.base.series import first_number
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.one_design import alone, motion_of_design
 from compoundkin.model.attributes import RATES, unit_suffix
@@ -239,11 +239,7 @@ def driver_value_text(structure: Structure, name: str, value: float) -> str:
 def ends_of(structure: Structure) -> dict[str, Ends]:
     """Return the ends of all pairs, of the first design."""
     geometry = structure.mechanism.geometry
-    return {pair.name: tuple(End(*map(_first_side, end)) for end in pair.ends(geometry)) for pair in structure.pairs}
-
-
-def _first_side(value: Number) -> Number:
-    return None if value is None else first_entry(value.c[0] if isinstance(value, Series) else value)
+    return {pair.name: tuple(End(*map(first_number, end)) for end in pair.ends(geometry)) for pair in structure.pairs}
 
 
 def path_letters(mechanism: Mechanism, paths: Any) -> tuple[str, ...]:
