@@ -69,9 +69,9 @@ class CallSeeds:
         """Return the seeds at first poses: continued from how the path is drawn, or solved for designs too far away."""
         designs = numbers.extent[0]
         first = replace(numbers, given={k: value[:, :1] for k, value in numbers.given.items()}, shape=(designs, 1))
-        if self._are_several(numbers):
+        route = None if self._are_several(numbers) else self.approach.route(numbers.driver_values, FINER)
+        if route is None:
             return _solved_seeds(path.seeds, first, self.by, path.mechanism.recording.signs)
-        route = self.approach.route(numbers.driver_values, FINER)
         return self._continued(path, first, self._drawn_start(path, first, route), route)
 
     def _are_several(self, numbers: CallNumbers) -> bool:

@@ -153,8 +153,11 @@ class DrawnApproach(ShortRepr):
         way = approach(*self._path(values))
         return None if way is None else {name: np.atleast_2d(drive[0]) for name, drive in way.drives.items()}
 
-    def route(self, values: Mapping[str, Number], finer: int) -> DriverRoute:
-        """Return the way of drivers to the first pose of a motion, as `solve` goes, in steps so much finer."""
+    def route(self, values: Mapping[str, Number], finer: int) -> DriverRoute | None:
+        """Return the way of drivers to the first pose of a motion, as `solve` goes, in steps so much finer.
+
+        None where that is many turns away.
+        """
         if all(value.size == 1 for value in values.values()):
             straight = self.to_pose(values, finer)
             if straight is not None:
@@ -162,6 +165,8 @@ class DrawnApproach(ShortRepr):
         path, poses = self._path(values)
         places, home = poses.of_poses[0], path.home
         low, high = sorted((home, places[0]))
+        if high - low > MOST:
+            return None
         knots = ascending(path.samples[(path.samples > low) & (path.samples < high)], [low, high])
         knots = np.interp(np.arange(finer * (len(knots) - 1) + 1) / finer, np.arange(len(knots)), knots)
         own = path.at(knots[::-1] if places[0] < home else knots).drives

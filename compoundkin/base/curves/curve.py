@@ -233,7 +233,8 @@ class Analytic(Curve):
         if place != key or len(known) <= order:
             known = self._expanded(s, max(order, USUAL))
             self.__dict__["_last"] = key, known
-        return known[: order + 1]
+        found: tuple[Number, ...] = known[: order + 1]
+        return found
 
     def _expanded(self, s: Number, order: int) -> tuple[Number, ...]:
         moving = Series((s, 1.0, *[0.0] * (order - 1))) if order else Series((s,))
