@@ -326,3 +326,46 @@ def test_a_new_task_names_all_kinds_and_shows_a_curve(run: Run, tmp_path: Path) 
     begin = next(k for k, line in enumerate(rest) if 'task = "curve"' in line)
     shown = "\n".join(line.removeprefix("#").strip() for line in rest[begin : begin + 4])
     assert read_task(tomllib.loads(f"format = 1\n{shown}"))[0].in_words == "a point along a closed curve of 8 points"
+
+
+UNREACHED = """format = 1
+title = "Zu weit ü"
+[links.frame]
+points = {{ A = [0, 0], D = [1000, 0] }}
+[links."Kurbel ü"]
+points = {{ A = [0, 0], B = [{crank}, 0] }}
+[links.koppel]
+points = {{ B = [0, 0], C = [20, 0] }}
+[links.schwinge]
+points = {{ C = [0, 0], D = [15, 0] }}
+[[drives]]
+link = "Kurbel ü"
+"""
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        # what cannot be drawn says why by the lengths
+        (("draw", "far.toml", "-o", "x.svg"), "|BD| = 1010 > |BC| + |CD| = 20 + 15"),
+        # the one thing that is wrong, and not what looks equal beside it
+        (("report", "huge.toml"), "1 problem\n  - (1e+200+0j) is too far away"),
+        (("solve", "four-bar:1e300,20,50,40"), "the others together, 110"),
+        (("new", "nowhere/x.toml"), "there is no folder nowhere"),
+        (("draw", "six-bar", "-o", "folder.svg"), "this is a folder"),
+        (("tolerance", "six-bar"), "--tolerance, --clearance\n  remedy: write NAME=0.05"),
+    ],
+)
+def test_an_impossible_wish_is_refused_by_its_cause(run: Run, words: tuple[str, ...], said: str) -> None:
+    Path("folder.svg").mkdir()
+    for name, crank in (("far", "10"), ("huge", "1e200")):
+        Path(f"{name}.toml").write_text(UNREACHED.format(crank=crank), encoding="utf-8")
+    result = run(*words)
+    assert result.exit_code in (2, 3)
+    assert said in result.stderr
+    assert not Path("x.svg").exists()
+
+
+def test_numbers_that_are_all_whole_do_not_look_like_degrees(run: Run) -> None:
+    result = run("solve", FOUR_BAR, "--at", "1e18")
+    assert (result.exit_code, result.stderr) == (0, "")

@@ -87,6 +87,8 @@ def analyse(structure: Structure, options: dict[str, Any]) -> ToleranceAnalysis:
     outputs = options["outputs"] or structure.mechanism.outputs
     if not outputs:
         raise InvalidInput(Problem("--output", "no output is named", "such as --output G.x.stroke"))
+    if not options["tolerances"] and not options["clearances"]:
+        raise InvalidInput(Problem("--tolerance, --clearance", "nothing has a tolerance", HOW))
     given = dict(read_errors(structure, "--tolerance", options["tolerances"]))
     values, time = typed_values.read_driver_values(structure, options) or None, typed_values.read_times(options["time"])
     rates: dict[str, Any] = {

@@ -37,7 +37,13 @@ def write_atomically(path: str | os.PathLike[str], write: Callable[[BinaryIO], A
         # a link is followed, so that it stays one
         with atomic_file(Path(os.path.realpath(path))) as file:
             write(file)
+    except IsADirectoryError:
+        raise InvalidInput(Problem(str(path), "this is a folder", "name a file in it")) from None
     except (OSError, ValueError) as error:
+        folder = os.path.dirname(path)
+        if isinstance(error, FileNotFoundError) and not os.path.isdir(folder or "."):
+            what = f"it cannot be written: there is no folder {os.fspath(folder)}"
+            raise InvalidInput(Problem(str(path), what, "make it")) from None
         what = getattr(error, "strerror", None) or str(error)
         raise InvalidInput(Problem(str(path), f"it cannot be written: {what}")) from None
 

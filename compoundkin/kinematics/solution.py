@@ -397,6 +397,10 @@ def _nearly(block: Block) -> set[int]:
 COUNTED = 4.0 * np.pi
 
 
+# From here on every floating number is whole.
+ALL_WHOLE = 2.0**52
+
+
 # A motion in steps of half a radian, 29 degrees, shows next to nothing.
 COARSE = 0.5
 
@@ -418,7 +422,7 @@ def look_like_degrees(values: Number) -> bool:
     (True, False)
     """
     ends = (values,) if np.ndim(values) == 0 else (values.flat[0], values.flat[-1])
-    if not all(float(end).is_integer() for end in ends) or max(map(abs, ends)) <= COUNTED:
+    if not all(float(end).is_integer() for end in ends) or not COUNTED < max(map(abs, ends)) < ALL_WHOLE:
         return False
     return np.size(values) == 1 or bool(np.mean(np.abs(np.diff(np.ravel(values)))) >= COARSE)
 

@@ -239,7 +239,9 @@ def point_problems(mechanism: MechanismDefinition) -> Iterator[Problem]:
                 yield Problem(where, f"{p!r} is empty or not finite")
             elif p is not None and is_too_great(p):
                 yield _off_scale(where, f"{p!r} is too far away")
-        yield from _lengths(mechanism, name, size)
+        # beside what is too far away all else would be one place
+        if not is_too_great(size):
+            yield from _lengths(mechanism, name, size)
     for letter, p in mechanism.sketch.items():
         if letter not in mechanism.carriers:
             yield Problem(f"drawn.{letter}", "no link carries this point", suggestion(letter, list(mechanism.carriers)))

@@ -35,7 +35,7 @@ from compoundkin.synthesis.linkage_words import (
 def check_closes(name: str, lengths: Mapping[str, float]) -> None:
     """Raise InvalidInput where the longest link is as long as all others together."""
     longest = max(lengths, key=lambda one: lengths[one])
-    rest = sum(lengths.values()) - lengths[longest]
+    rest = sum(length for name, length in lengths.items() if name != longest)
     if lengths[longest] >= rest:
         what = (
             f"it cannot be closed: {longest}, {lengths[longest]:g}, is not shorter than the others together, {rest:g}"

@@ -24,6 +24,7 @@ from compoundkin.base.errors import (
 from compoundkin.base.poses import End, Pose
 from compoundkin.base.series import first_number
 from compoundkin.kinematics import Motion, solve
+from compoundkin.kinematics.gaps import gaps
 from compoundkin.kinematics.one_design import alone, motion_of_design
 from compoundkin.model.attributes import RATES, unit_suffix
 from compoundkin.model.mechanism import Mechanism
@@ -143,7 +144,9 @@ def _nearest_to_drawing(motion: Motion, design: int, failed: Number) -> int:
     """The assembled pose nearest to the drawn points; without a drawing, some way into the motion."""
     known = np.flatnonzero(failed == 0)
     if not known.size:
-        raise NotAssembled(Problem("draw", "the motion has no assembled pose", "gaps() tells why"))
+        why = next((gap.reason for gap in gaps(motion)), "") if motion.inputs.designs == 1 else ""
+        what = "the motion has no assembled pose" + (f": {why}" if why else "")
+        raise NotAssembled(Problem("draw", what, "gaps() tells why" if not why else "change a length"))
     sketch = {k: v for k, v in motion.mechanism.sketch.items() if k in motion.mechanism.carriers}
     off = np.zeros(motion.inputs.poses)
     for letter, drawn in sketch.items():
