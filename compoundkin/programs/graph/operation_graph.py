@@ -79,6 +79,8 @@ OPERATIONS: dict[str, Operation] = {
     )
 }
 
+COMMUTATIVE = frozenset(name for name, one in OPERATIONS.items() if one.is_commutative)
+
 # Reductions over the poses of a design: what comes out is fixed by the design. The least keeps a NaN.
 TOTAL, LEAST = "total", "least"
 REDUCTIONS: dict[str, Callable[..., Any]] = {TOTAL: np.add.reduce, LEAST: np.minimum.reduce}
@@ -165,9 +167,11 @@ class OperationGraph(ShortRepr):
         else:
             with np.errstate(all="ignore"):
                 return self.constant(float(OPERATIONS[operation].compute(*(nodes[k].value for k in operands))))
-        if OPERATIONS[operation].is_commutative and operands[0] > operands[1]:
+        if operation in COMMUTATIVE and operands[0] > operands[1]:
             return self.apply(operation, *operands[::-1])
-        return simplified(self, operation, operands)
+        # a product with the number zero is zero: what is not a number there is masked by the group that failed
+        rule = _RULES.get(operation)
+        return None if rule is None else rule(self, *operands)
 
     def _new(self, key: object, node: OperationNode) -> int:
         with self._grows:
@@ -259,15 +263,6 @@ def start_of(seed: InputNumber) -> InputNumber:
     return seed._replace(part=f"start {seed.part}")
 
 
-def simplified(graph: OperationGraph, operation: str, operands: tuple[int, ...]) -> int | None:
-    """Return a cheaper node of the same value; None where there is none.
-
-    A product with the number zero is zero: what is not a number there is masked by the group that failed.
-    """
-    rule = _RULES.get(operation)
-    return None if rule is None else rule(graph, *operands)
-
-
 def _operand_of(graph: OperationGraph, node: int, operation: str) -> int | None:
     """Return the operand of a node of one operation."""
     found = graph.nodes[node]
@@ -275,20 +270,20 @@ def _operand_of(graph: OperationGraph, node: int, operation: str) -> int | None:
 
 
 def _add(graph: OperationGraph, a: int, b: int) -> int | None:
-    for one, other in ((a, b), (b, a)):
-        if graph.is_constant(one, 0.0):
+    x, y = graph.nodes[a], graph.nodes[b]
+    for node, other in ((x, b), (y, a)):
+        operation = node.operation
+        if operation == CONSTANT and node.value == 0.0:
             return other
-        minus = _operand_of(graph, one, "neg")
-        if minus is not None:
-            return graph.apply("sub", other, minus)
-    return _merged_choice(graph, a, b)
+        if operation == "neg":
+            return graph.apply("sub", other, node.operands[0])
+    return _merged_choice(graph, x, y) if x.operation == y.operation == "select" else None
 
 
-def _merged_choice(graph: OperationGraph, a: int, b: int) -> int | None:
+def _merged_choice(graph: OperationGraph, one: OperationNode, other: OperationNode) -> int | None:
     """Return the sum of what is chosen where a truth is and what is chosen where it is not, as one choice."""
-    for one, other in ((a, b), (b, a)):
-        x, y = graph.nodes[one], graph.nodes[other]
-        if x.operation == y.operation == "select" and x.operands[0] == y.operands[0]:
+    for x, y in ((one, other), (other, one)):
+        if x.operands[0] == y.operands[0]:
             truth, here, there = x.operands[0], x.operands[1], y.operands[2]
             if graph.is_constant(x.operands[2], 0.0) and graph.is_constant(y.operands[1], 0.0):
                 return graph.apply("select", truth, here, there)
@@ -296,31 +291,32 @@ def _merged_choice(graph: OperationGraph, a: int, b: int) -> int | None:
 
 
 def _sub(graph: OperationGraph, a: int, b: int) -> int | None:
-    if graph.is_constant(b, 0.0):
+    x, y = graph.nodes[a], graph.nodes[b]
+    if y.operation == CONSTANT and y.value == 0.0:
         return a
-    if graph.is_constant(a, 0.0):
+    if x.operation == CONSTANT and x.value == 0.0:
         return graph.apply("neg", b)
     if a == b:
         return graph.constant(0.0)
-    minus = _operand_of(graph, b, "neg")
-    if minus is not None:
-        return graph.apply("add", a, minus)
-    minus = _operand_of(graph, a, "neg")
-    return None if minus is None else graph.apply("neg", graph.apply("add", minus, b))
+    if y.operation == "neg":
+        return graph.apply("add", a, y.operands[0])
+    return graph.apply("neg", graph.apply("add", x.operands[0], b)) if x.operation == "neg" else None
 
 
 def _mul(graph: OperationGraph, a: int, b: int) -> int | None:
     x, y = graph.nodes[a], graph.nodes[b]
     for node, one, other in ((x, a, b), (y, b, a)):
-        if node.operation == CONSTANT:
+        operation = node.operation
+        if operation == CONSTANT:
             return _by_number(graph, one, other)
-        if node.operation == "neg":
+        if operation == "neg":
             return graph.apply("neg", graph.apply("mul", node.operands[0], other))
-        opposite = graph.there("sub", *node.operands[::-1]) if node.operation == "sub" else None
-        if opposite is not None and opposite < one:
+        if operation == "sub":
             # a difference that was taken the other way round before
-            return graph.apply("neg", graph.apply("mul", opposite, other))
-        if node.operation == "inv" and node.operands[0] == other:
+            opposite = graph.there("sub", *node.operands[::-1])
+            if opposite is not None and opposite < one:
+                return graph.apply("neg", graph.apply("mul", opposite, other))
+        elif operation == "inv" and node.operands[0] == other:
             return _by_itself(graph, other)
     return x.operands[0] if a == b and x.operation == "sqrt" else None
 

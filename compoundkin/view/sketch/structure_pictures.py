@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import chain, pairwise
 
 import numpy as np
 
@@ -559,10 +559,10 @@ def spread_links(names: Sequence[str], pairs: Sequence[Pair]) -> list[complex]:
     rng = np.random.default_rng(0)
     # the same orders every time: the seed is fixed
     starts = min(MOST_STARTS, STARTS // len(names))
-    tried = _relaxed_places(
-        ideal, np.array([np.arange(len(names)), *(rng.permutation(len(names)) for _ in range(starts))])
-    )
-    places = min(tried, key=lambda found: _faults(found, joined))
+    orders = np.array([np.arange(len(names)), *(rng.permutation(len(names)) for _ in range(starts))])
+    step = max(1, BATCH // len(names) ** 2)
+    tried = (_relaxed_places(ideal, orders[first : first + step]) for first in range(0, len(orders), step))
+    places = min(chain.from_iterable(tried), key=lambda found: _faults(found, joined))
     places = places - places[0]
     # the frame below, as it is drawn
     far = np.mean(places) if len(names) > 1 else 1j
@@ -609,6 +609,8 @@ def _crossings(places: Number, joined: Sequence[tuple[int, int]]) -> int:
 
 # How near a link may be to the line of others.
 NODE_ROOM = 0.3
+# So many distances are relaxed at once: their arrays stay in a second-level cache.
+BATCH = 1 << 14
 # Of so many starting orders, by the number of links, the one is taken whose lines cross least.
 STARTS, MOST_STARTS = 500, 40
 # Products of distances below this are rounding.
