@@ -96,7 +96,7 @@ def judged(candidate: Linkage, conditions: Conditions, tolerance: float = 0.0) -
     wrong = _unfulfilled(candidate, conditions)
     if wrong is not None:
         return wrong
-    bad, good = list[Rejection](), list[_DriverCourse]()
+    bad, good = list[Rejection](), list[_PositionsInOrder]()
     for driver in candidate.drivers:
         found = _course(candidate, driver, conditions)
         if isinstance(found, Rejection):
@@ -134,7 +134,7 @@ def _poor(least: float, candidate: Linkage, driver: str) -> Rejection:
     return Rejection(TRANSMISSION, text, candidate, driver)
 
 
-class _DriverCourse(NamedTuple):
+class _PositionsInOrder(NamedTuple):
     """The driver's values at the positions as they follow one another on one branch, and whether it turns fully."""
 
     driver: str
@@ -161,7 +161,7 @@ def _unfulfilled(candidate: Linkage, conditions: Conditions) -> Rejection | None
     return None
 
 
-def _course(candidate: Linkage, driver: str, conditions: Conditions) -> _DriverCourse | Rejection:
+def _course(candidate: Linkage, driver: str, conditions: Conditions) -> _PositionsInOrder | Rejection:
     """Return how a driver passes the positions, or what prevents it."""
     given = candidate.drivers[driver]
     if _out_of_order(given, candidate.u[driver]):
@@ -189,7 +189,7 @@ def _course(candidate: Linkage, driver: str, conditions: Conditions) -> _DriverC
     if conditions.turning and not turns:
         text = f"{driver} goes from {_value(circuit.low, found)} to {_value(circuit.high, found)}"
         return Rejection(TURNING, text, candidate, driver)
-    return _DriverCourse(driver, values, turns)
+    return _PositionsInOrder(driver, values, turns)
 
 
 def _out_of_order(values: Number, u: Number) -> bool:
@@ -259,7 +259,7 @@ def _value(value: float, found: Circuits) -> str:
 
 
 def _solved(
-    candidate: Linkage, course: _DriverCourse, conditions: Conditions, tolerance: float
+    candidate: Linkage, course: _PositionsInOrder, conditions: Conditions, tolerance: float
 ) -> SolvedLinkage | Rejection:
     """Return the solution over a branch with all positions, or why it is none."""
     driver, values, turns = course

@@ -292,7 +292,7 @@ def percentiles_by_column(pieces: Callable[[], Iterable[Number]], columns: int, 
     after = np.minimum(before + 1, np.maximum(sizes, 1) - 1)
     wanted = [np.unique([before[:, column], after[:, column]]) for column in range(columns)]
     ranges = [
-        _Range(column, float(low[column]), float(high[column]), int(sizes[column]), 0, wanted[column])
+        _SoughtRange(column, float(low[column]), float(high[column]), int(sizes[column]), 0, wanted[column])
         for column in np.flatnonzero(sizes).tolist()
     ]
     ordered: dict[tuple[int, int], float] = {}
@@ -307,7 +307,7 @@ def percentiles_by_column(pieces: Callable[[], Iterable[Number]], columns: int, 
     return result
 
 
-class _Range(NamedTuple):
+class _SoughtRange(NamedTuple):
     """The values of a column from `low` to `high`, of which there are so many; `before` others are less.
 
     `wanted` are places in the order of the whole column that lie in it.
@@ -342,7 +342,7 @@ class _Range(NamedTuple):
         beyond = _places_of_floats(values).view(np.uint64) - np.int64(first).view(np.uint64)
         return (beyond >> np.uint64(self.shift(count))).view(np.int64)
 
-    def parts(self, sizes: Number) -> Iterator[_Range]:
+    def parts(self, sizes: Number) -> Iterator[_SoughtRange]:
         """Yield the classes of it in which wanted places lie, by the sizes of all."""
         before = self.before + np.concatenate([[0], np.cumsum(sizes)])
         owners = np.searchsorted(before, self.wanted, side="right") - 1
@@ -350,12 +350,12 @@ class _Range(NamedTuple):
         for k in np.unique(owners).tolist():
             low, high = first + (k << shift), min(first + ((k + 1) << shift) - 1, last)
             wanted = self.wanted[owners == k]
-            yield _Range(self.column, _float_at(low), _float_at(high), int(sizes[k]), int(before[k]), wanted)
+            yield _SoughtRange(self.column, _float_at(low), _float_at(high), int(sizes[k]), int(before[k]), wanted)
 
 
 def _narrowed(
-    pieces: Callable[[], Iterable[Number]], ranges: Sequence[_Range], ordered: dict[tuple[int, int], float]
-) -> list[_Range]:
+    pieces: Callable[[], Iterable[Number]], ranges: Sequence[_SoughtRange], ordered: dict[tuple[int, int], float]
+) -> list[_SoughtRange]:
     """Read all pieces once: note the values at places of small ranges, return narrower ones in place of the others."""
     for one in ranges:
         if one.low == one.high:

@@ -11,9 +11,9 @@ import compoundkin as ck
 from compoundkin.dynamics.reactions import undetermined
 from compoundkin.dynamics.reactions.undetermined import pressing_force
 from compoundkin.dynamics.simulation import contact_watches, drive_table, tabulated_chart
-from compoundkin.dynamics.simulation.contact_forces import tabulated_pressing
 from compoundkin.dynamics.simulation.coordinate_change import by_links, chart_of
 from compoundkin.dynamics.simulation.dormand_prince import PlainSolver
+from compoundkin.dynamics.simulation.normal_force_table import tabulated_pressing
 from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
 from compoundkin.model.pairs.profile_contact import as_profile_contact
 from tests.dynamics.cases import SI, crank_rocker

@@ -14,9 +14,9 @@ from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dynamics.force_analysis import force_analysis
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.reactions.undetermined import pressing_force
-from compoundkin.dynamics.simulation.contact_forces import tabulated_pressing
 from compoundkin.dynamics.simulation.coordinate_change import Chart
 from compoundkin.dynamics.simulation.driver_state import KnownState
+from compoundkin.dynamics.simulation.normal_force_table import tabulated_pressing
 from compoundkin.dynamics.simulation.phases import LANDED, OpenPair, pair_meant
 from compoundkin.dynamics.simulation.simulation_events import SimulationEvent, ZeroWatch
 from compoundkin.dynamics.simulation.stop_contacts import StopContact, contacts_of, holding, impact, margins

@@ -164,6 +164,13 @@ class FrictionTable(TabulatedChart):
             return self._free(found.normal, time, self.sides)
         return self._freed(self.state(time, values, speeds))
 
+    def acceleration_and_frictions(self, time: float, values: Number, speeds: Number) -> tuple[float, Number]:
+        """Return both; frictions that act while a rigid stop holds the driver are not known."""
+        if self.rigid:
+            return super().acceleration_and_frictions(time, values, speeds)
+        found = self.free_motion(time, values, speeds)
+        return found.acceleration, found.sizes
+
     def _freed(self, state: DriverState) -> FreeMotion:
         """Return this motion at a solved state."""
         found = self._in_table(state.time, float(state.values[0]), float(state.speeds[0]), self.direction)
@@ -265,7 +272,7 @@ class FrictionTable(TabulatedChart):
 
     def _tabulate(self, value: float, poses: Mapping[str, Pose]) -> None:
         super()._tabulate(value, poses)
-        self.pressed = None if self.table is None else normal_force_table(self, self.contacts)
+        self.pressed = None if self.table is None else normal_force_table(self)
 
     def _enter(self, time: float, values: Number, speeds: Number) -> None:
         """Take the stretch of sliding that lies in the direction of motion."""
@@ -343,4 +350,4 @@ class FrictionTable(TabulatedChart):
     @cached_property
     def _layout(self) -> ForceLayout:
         """The layout of the rows."""
-        return force_layout(self, self.start, self.contacts)
+        return force_layout(self, self.start)

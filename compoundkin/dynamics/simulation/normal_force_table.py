@@ -36,6 +36,7 @@ from compoundkin.dynamics.reactions.reverse_pass import (
     reverse_passes,
     stressed_blocks,
 )
+from compoundkin.dynamics.reactions.undetermined import spare_force
 from compoundkin.dynamics.simulation.drive_table import (
     DRIVE_SCALES,
     POINTS,
@@ -43,10 +44,16 @@ from compoundkin.dynamics.simulation.drive_table import (
     TablePiece,
     accurate_pieces,
     drive_terms,
+    piece_at,
 )
+from compoundkin.dynamics.simulation.driver_state import PushedState, unit_motion
+from compoundkin.dynamics.simulation.stop_contacts import holding
 from compoundkin.dynamics.simulation.tabulated_chart import TabulatedChart
 from compoundkin.kinematics.motion import Motion
 from compoundkin.model.loads.contract import Load
+from compoundkin.model.loads.friction import Friction
+from compoundkin.model.pairs.contact import as_friction_pair
+from compoundkin.model.pairs.profile_contact import as_profile_contact
 
 # Reversals of sliding are looked for at so many places of each piece, and found by so many halvings.
 PLACES, HALVINGS = 64, 50
@@ -290,11 +297,11 @@ def usual_sizes(layout: ForceLayout, motion: Motion) -> dict[int, float]:
     return found
 
 
-def normal_force_table(chart: TabulatedChart, contacts: tuple[LoadedContact, ...]) -> NormalForceTable | None:
+def normal_force_table(chart: TabulatedChart) -> NormalForceTable | None:
     """Return the table of normal forces in contacts with friction of a chart; None where they are nowhere accurate."""
     table = chart.table
     assert table is not None
-    layout = force_layout(chart, table.motion, contacts)
+    layout = force_layout(chart, table.motion)
     sizes = usual_sizes(layout, table.motion) | _sizes_of_scales(layout, table.motion) | dict(table.least)
     pieces = accurate_pieces(table.course, layout.terms, layout.scales, chart.candidates, sizes)
     if not pieces:
@@ -305,25 +312,22 @@ def normal_force_table(chart: TabulatedChart, contacts: tuple[LoadedContact, ...
 
 
 def force_layout(
-    chart: TabulatedChart,
-    motion: Motion,
-    rubbing: tuple[LoadedContact, ...],
-    pressed: tuple[LoadedContact, ...] | None = None,
+    chart: TabulatedChart, motion: Motion, pressed: tuple[LoadedContact, ...] | None = None
 ) -> ForceLayout:
     """Return the layout of the rows, whose number the first block shows.
 
-    They are those of the contacts with friction, `rubbing`, or of others that are `pressed`, with what stops and
+    They are those of the contacts with friction, or of others that are `pressed`, with what stops and
     self-stress do.
     """
     at = next(iter(loaded_blocks(motion)))
-    contacts = rubbing if pressed is None else pressed
+    contacts = chart.contacts if pressed is None else pressed
     nothing = reverse_pass(motion.solving_order, at.block, {})
     each = [normal_forces_of(at, (contact,), nothing) for contact in contacts]
     rows = [row for own in each for row in own]
     owners = [k for k, own in enumerate(each) for _ in own]
     vectors = [k for k, row in enumerate(rows) if np.iscomplexobj(row)]
     components = NormalForceComponents(owners, vectors)
-    found = ForceLayout(rubbing, chart.timeless, chart.touched, components, contacts, chart.pushing)
+    found = ForceLayout(chart.contacts, chart.timeless, chart.touched, components, contacts, chart.pushing)
     if pressed is None:
         return found
     left_out = parts_left_out(motion.structure)
@@ -413,3 +417,80 @@ class _SlidingRates:
             middle = 0.5 * (low + high)
             low, high = (low, middle) if (float(row @ self.piece.basis(middle)) > 0.0) is rises else (middle, high)
         return high
+
+
+class ContactForces:
+    """The forces that press contacts which may let go: a table over a driver, as of normal forces.
+
+    Where it is not accurate, its rows are those of the solved pose.
+    """
+
+    def __init__(self, chart: TabulatedChart, contacts: tuple[LoadedContact, ...]) -> None:
+        assert chart.table is not None
+        table, motion = chart.table, chart.table.motion
+        self.layout = force_layout(chart, motion, contacts)
+        sizes = usual_sizes(self.layout, motion) | dict(table.least)
+        self.pieces = accurate_pieces(table.course, self.layout.terms, self.layout.scales, chart.candidates, sizes)
+        self.starts = [piece.low for piece in self.pieces]
+        self.index = {contact.name: k for k, contact in enumerate(contacts)}
+
+    def pressing(self, name: str, chart: TabulatedChart, time: float, value: float, speed: float) -> float | None:
+        """Return the force that presses a contact at a state of a chart, None where it is not known."""
+        if name not in self.index:
+            return None
+        values, speeds = np.array([value]), np.array([speed])
+        causes = self._causes(chart, value)
+        second, sizes = chart.acceleration_and_frictions(time, values, speeds)
+        known = [1.0, second, speed * speed, *sizes]
+        if chart.has_others or chart.closed:
+            seen = chart.seen(time, values, speeds)
+            others = chart.wrenches_of_others(seen.loaded, self.layout.touched)
+            if others is None:
+                return None
+            known += [*others[2:], *self._at_stops(chart, seen, time, values, speeds)]
+        normals = np.array(known) @ causes[: len(known)]
+        return spare_force(self.index[name], normals, causes[len(causes) - self.layout.states :])
+
+    def _causes(self, chart: TabulatedChart, value: float) -> Number:
+        """Return the normal forces in all contacts by each cause, (causes, contacts)."""
+        inside, first = chart.tabulated(value), len(DRIVE_SCALES) + len(self.layout.contacts)
+        piece = piece_at(self.pieces, self.starts, inside)
+        if piece is not None:
+            rows = piece.terms[first:].dot(piece.basis(inside))
+        else:
+            state = chart.state(0.0, np.array([value]), np.ones(1))
+            rows = self.layout.terms(unit_motion(state, chart.start))[first:, 0]
+        found: Number = rows.reshape(-1, len(self.index))
+        return found
+
+    def _at_stops(
+        self, chart: TabulatedChart, seen: PushedState, time: float, values: Number, speeds: Number
+    ) -> Number:
+        """Return the efforts along the pairs with stops: those of elastic ones may be among the other loads."""
+        efforts = dict.fromkeys(self.layout.efforts[len(chart.pushing) :], 0.0)
+        rigid = chart.rigid
+        if rigid:
+            free = chart.unheld_rates(time, values, speeds)
+            for one, force in zip(rigid, holding([one.at(seen) for one in rigid], seen, free).tolist(), strict=True):
+                efforts[one.stop.pair] += one.side * force
+        for one in chart.closed if chart.adds_stops else ():
+            if one.stop.is_elastic:
+                efforts[one.stop.pair] += one.side * one.push(seen)
+        return np.array([*efforts.values()])
+
+
+def tabulated_pressing(chart: TabulatedChart, name: str, time: float, value: float, speed: float) -> float | None:
+    """Return the force that presses a contact, from a table made once; None where it is to be found from the state.
+
+    That is so where the effort of a motor depends on the acceleration, and while a load holds a speed.
+    """
+    table = chart.table
+    if table is None or chart.laws or chart.held is not None or chart.rotors_that_lose:
+        return None
+    if chart.contact_forces is None or chart.contact_forces[0] is not table:
+        pairs = (pair for pair in chart.order.pairs.values()
+                 if (own := as_profile_contact(pair)) is not None and not own.has_ends)  # fmt: skip
+        contacts = (LoadedContact(one, Friction(one.name, 0.0)) for one in map(as_friction_pair, pairs) if one)
+        chart.contact_forces = table, ContactForces(chart, tuple(contacts))
+    forces: ContactForces = chart.contact_forces[1]
+    return forces.pressing(name, chart, time, value, speed)

@@ -12,6 +12,7 @@ import numpy as np
 from compoundkin.base.arrays import TURN, Number, whole_turns
 from compoundkin.base.poses import Pose
 from compoundkin.base.series import Series
+from compoundkin.dynamics.friction.friction_contacts import LoadedContact
 from compoundkin.dynamics.loaded_block import LoadedBlock, loaded_blocks
 from compoundkin.dynamics.mass_motion import InertiaTerms
 from compoundkin.dynamics.simulation.dormand_prince import PlainRates
@@ -145,6 +146,16 @@ class TabulatedChart(DriverChart):
             return pushed - bias * speed * speed, other * speed
 
         return known
+
+    @property
+    def contacts(self) -> tuple[LoadedContact, ...]:
+        """The pairs with friction: none."""
+        return ()
+
+    def acceleration_and_frictions(self, time: float, values: Number, speeds: Number) -> tuple[float, Number]:
+        """Return the acceleration of the driver, and the frictions as far as they are known."""
+        found = self.followed_rates(time, values, speeds)
+        return float(found.accelerations[0]), np.zeros(len(self.contacts))
 
     @property
     def longest_moves(self) -> Number:
