@@ -366,6 +366,20 @@ def test_an_impossible_wish_is_refused_by_its_cause(run: Run, words: tuple[str, 
     assert not Path("x.svg").exists()
 
 
+@pytest.mark.parametrize(
+    ("words", "begins"),
+    [
+        (("task",), "# A task of synthesis."),
+        (("study",), "# A study"),
+        (("four-bar", "60", "20", "50", "40"), "# Four-bar"),
+    ],
+)
+def test_a_new_file_may_be_named_last(run: Run, words: tuple[str, ...], begins: str) -> None:
+    result = run("new", *words, "mine.toml")
+    assert (result.exit_code, result.stderr.splitlines()[:-1]) == (0, [])
+    assert Path("mine.toml").read_text(encoding="utf-8").startswith(begins)
+
+
 def test_numbers_that_are_all_whole_do_not_look_like_degrees(run: Run) -> None:
     result = run("solve", FOUR_BAR, "--at", "1e18")
     assert (result.exit_code, result.stderr) == (0, "")

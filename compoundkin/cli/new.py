@@ -155,6 +155,9 @@ def command(words: tuple[str, ...], path: str | None, listed: bool, source: str 
     if listed:
         put(linkage_list())
         return 0
+    if path is None and len(words) > 1 and suffix_of(Path(words[-1])) == suffix_for("mechanism", "toml"):
+        # new task mine.toml: the last word is where, as after -o
+        words, path = words[:-1], words[-1]
     name, given = words[0] if words else "", words[1:]
     is_linkage = bool(given) or (name != "" and suffix_of(Path(name)) == "" and not Path(name).is_dir())
     if not is_linkage and path is not None and name:
