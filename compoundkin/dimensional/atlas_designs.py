@@ -39,26 +39,55 @@ DRAWS = 400
 EIGHTH = 0.12
 
 
+class DrawnDesigns(NamedTuple):
+    """Designs of a chain (designs, numbers), the descriptors of their curves, and the extents of these, (designs, 3).
+
+    Extents are the RMS radius and the middle's two coordinates.
+    """
+
+    designs: Number
+    descriptors: Number
+    extents: Number
+
+
 class AtlasPart(NamedTuple):
     """The designs of one chain, in memory or in a file."""
 
     chain: CurveChain
     size: int
-    held: tuple[Number, Number] | None
+    held: DrawnDesigns | None
     path: Path | None = None
 
     @property
     def descriptors(self) -> Number:
         """The descriptors of all designs (designs, coefficients)."""
         if self.held is not None:
-            return self.held[1]
+            return self.held.descriptors
         assert self.path is not None
         return part_columns(self.path, [_DESCRIPTOR])[_DESCRIPTOR.name].view(np.complex64).reshape(-1, 2 * HARMONICS)
+
+    @property
+    def extents(self) -> tuple[Number, Number]:
+        """The RMS radii and the middles of the curves of all designs (designs,)."""
+        if self.held is not None:
+            radius, x, y = self.held.extents.T
+        else:
+            assert self.path is not None
+            radius, x, y = part_columns(self.path, _EXTENTS).values()
+        return radius, x + 1j * y
+
+    def in_memory(self, descriptors: Number) -> AtlasPart:
+        """Return it with all that its file has, of which the descriptors are known."""
+        if self.held is not None:
+            return self
+        radius, middle = self.extents
+        held = DrawnDesigns(self.designs(), descriptors, np.stack([radius, middle.real, middle.imag], axis=-1))
+        return self._replace(held=held)
 
     def designs(self, at: Number = None) -> Number:
         """Return the designs at some places, else all (designs, numbers)."""
         if self.held is not None:
-            return self.held[0] if at is None else self.held[0][at]
+            return self.held.designs if at is None else self.held.designs[at]
         assert self.path is not None
         columns = _numbers(self.chain)
         found = part_columns(self.path, columns) if at is None else part_rows(self.path, columns, at)
@@ -99,12 +128,13 @@ class AtlasPlan:
 
 def parts_in_memory(plan: AtlasPlan, on: Any = None) -> tuple[AtlasPart, ...]:
     """Return the parts of an atlas, made here or `on` other workers. Raises StudyStopped where these die."""
-    return tuple(AtlasPart(chain, len(designs), (designs, found)) for _, chain, designs, found in _made(plan, {}, on))
+    return tuple(AtlasPart(chain, len(drawn.designs), drawn) for _, chain, drawn in _made(plan, {}, on))
 
 
-# The file that says what an atlas in a folder is, and the column of descriptors.
+# The file that says what an atlas in a folder is, and the columns of descriptors and of curves' extents.
 _DEFINITION, _DESCRIPTOR = f"atlas{suffix_for('mechanism', 'json')}", StudyColumn("descriptor", "", "output")
-_FORMAT = 2
+_EXTENTS = [StudyColumn(name, "", "output") for name in ("radius", "middle.x", "middle.y")]
+_FORMAT = 3
 
 
 def parts_in_folder(plan: AtlasPlan, folder: str | os.PathLike[str], on: Any = None) -> tuple[AtlasPart, ...]:
@@ -126,10 +156,11 @@ def parts_in_folder(plan: AtlasPlan, folder: str | os.PathLike[str], on: Any = N
     if len(kept) < len(parts):
         sweep(where, is_complete=False)
         fingerprint = hashlib.sha256(_definition(plan).encode()).hexdigest()[:16]
-        for k, chain, designs, descriptors in _made(plan, kept, on):
-            columns = {one.name: designs[:, n] for n, one in enumerate(chain.numbers)}
-            columns[_DESCRIPTOR.name] = np.ravel(descriptors.view(f"V{descriptors.strides[0]}"))
-            content = part_content([*_numbers(chain), _DESCRIPTOR], [columns], fingerprint)
+        for k, chain, drawn in _made(plan, kept, on):
+            columns = {one.name: drawn.designs[:, n] for n, one in enumerate(chain.numbers)}
+            columns[_DESCRIPTOR.name] = np.ravel(drawn.descriptors.view(f"V{drawn.descriptors.strides[0]}"))
+            columns |= {one.name: drawn.extents[:, n] for n, one in enumerate(_EXTENTS)}
+            content = part_content([*_numbers(chain), _DESCRIPTOR, *_EXTENTS], [columns], fingerprint)
             _write(where / _file(k), content)
         sweep(where, is_complete=True)
     return parts
@@ -220,8 +251,8 @@ class _Piece(NamedTuple):
 
 def _made(
     plan: AtlasPlan, kept: Mapping[ChainPlan, AtlasPart], on: Any
-) -> Iterator[tuple[int, CurveChain, Number, Number]]:
-    """Yield chains that are not `kept` with their numbers, their designs and the descriptors of these.
+) -> Iterator[tuple[int, CurveChain, DrawnDesigns]]:
+    """Yield chains that are not `kept`, with their places among all, and their designs.
 
     Those of eight links are dyads on designs of six.
     """
@@ -235,18 +266,18 @@ def _made(
     for is_grown in (False, True):
         some = [(k, chain) for k, chain in missing if (chain.links == 8) == is_grown]
         pieces = [_Piece(chain.plan, shares[k], plan.seed + k, base(chain) if is_grown else None) for k, chain in some]
-        for (k, chain), (designs, found) in zip(some, _in_order(pieces, on), strict=True):
+        for (k, chain), drawn in zip(some, _in_order(pieces, on), strict=True):
             if not is_grown:
-                made[chain.plan] = designs
-            yield k, chain, designs, found
+                made[chain.plan] = drawn.designs
+            yield k, chain, drawn
 
 
-def _in_order(pieces: Sequence[_Piece], on: Any) -> Iterator[tuple[Number, Number]]:
+def _in_order(pieces: Sequence[_Piece], on: Any) -> Iterator[DrawnDesigns]:
     """Yield what is made of pieces in their order, here or on other workers."""
     if on is None:
         yield from map(_drawn, pieces)
         return
-    done, wanted = dict[int, tuple[Number, Number]](), 0
+    done, wanted = dict[int, DrawnDesigns](), 0
     with workers(on, None) as computing:
         assert computing.executor is not None
         numbered = list(enumerate(pieces))
@@ -263,16 +294,16 @@ def _in_order(pieces: Sequence[_Piece], on: Any) -> Iterator[tuple[Number, Numbe
             raise
 
 
-def _drawn_of_numbered(one: tuple[int, _Piece]) -> tuple[Number, Number]:
+def _drawn_of_numbered(one: tuple[int, _Piece]) -> DrawnDesigns:
     return _drawn(one[1])
 
 
-def _drawn(piece: _Piece) -> tuple[Number, Number]:
-    """Return the first so many designs of a chain that turn fully, and the descriptors of their curves."""
+def _drawn(piece: _Piece) -> DrawnDesigns:
+    """Return the first so many designs of a chain that turn fully."""
     chain, count = curve_chain(piece.plan), piece.kept
     most = 1 << max(count * DRAWS, BLOCK).bit_length()
     sample = SobolSample(min(most, 1 << 29), piece.seed)
-    designs, found, kept = list[Number](), list[Number](), 0
+    found, kept = list[DrawnDesigns](), 0
     for first in range(0, sample.count, BLOCK):
         if kept >= count:
             break
@@ -284,10 +315,11 @@ def _drawn(piece: _Piece) -> tuple[Number, Number]:
         drawn = drawn.astype(np.float32).astype(float)  # as they are kept
         curves, clear = chain.curves(drawn, POSES)
         drawn, curves = drawn[clear], curves[clear]
-        own, radius = coefficients(curves)
+        own, radius, middle = coefficients(curves)
         seen = radius > LEAST_RADIUS * chain.size(drawn)
         seen[seen] = chain.curves(drawn[seen], CLEAR_AT)[1]
-        designs.append(drawn[seen].astype(np.float32))
-        found.append(own[seen].astype(np.complex64))
+        extents = np.stack([radius, middle.real, middle.imag], axis=-1)
+        some = drawn[seen].astype(np.float32), own[seen].astype(np.complex64), extents[seen].astype(np.float32)
+        found.append(DrawnDesigns(*some))
         kept += int(seen.sum())
-    return np.concatenate(designs)[:count], np.concatenate(found)[:count]
+    return DrawnDesigns(*(np.concatenate(each)[:count] for each in zip(*found, strict=True)))

@@ -31,7 +31,7 @@ from compoundkin.dimensional.atlas_designs import (
 )
 from compoundkin.dimensional.candidates import Linkage
 from compoundkin.dimensional.curve_chains import CRANK, CurveChain, Laying, turn
-from compoundkin.dimensional.curve_conditions import CurveConditions, LaidDesigns
+from compoundkin.dimensional.curve_conditions import CurveConditions, LaidDesigns, UnlaidDesigns
 from compoundkin.dimensional.curve_likeness import (
     ORDERS,
     SAMPLES,
@@ -240,6 +240,8 @@ def _different(part: AtlasPart, sought: SoughtCurve, looked_at: int) -> Iterator
     So many that hold are looked at.
     """
     descriptors = part.descriptors
+    if sought.conditions:
+        part = part.in_memory(descriptors)
     shown: list[Number] = []
     if sought.timing is not None:
         ranked = _with_timing(part, sought)
@@ -249,9 +251,7 @@ def _different(part: AtlasPart, sought: SoughtCurve, looked_at: int) -> Iterator
     for block in ranked:
         for some in block.split(many):
             if sought.conditions:
-                designs, scale, place, _ = _laid(part, some, sought)
-                held = sought.conditions.held(LaidDesigns(part.chain, designs, scale, place, some.mirrored))
-                some, many = some.some(held), min(2 * many, COMPARED)
+                some, many = _held(part, some, sought), min(2 * many, COMPARED)
             if looked_at <= 0:
                 return
             some = some.some(slice(looked_at))
@@ -267,6 +267,20 @@ def _different(part: AtlasPart, sought: SoughtCurve, looked_at: int) -> Iterator
                     shown.append(own[k])
                     alike |= _alike(own, own[k], limit, ~alike)
                     yield some.some(slice(k, k + 1))
+
+
+def _held(part: AtlasPart, some: _Ranked, sought: SoughtCurve) -> _Ranked:
+    """Return those that hold the conditions: of closed curves without timing those that may are laid alone."""
+    if sought.closed and sought.timing is None:
+        target, (radius, middle) = sought.seen(SAMPLES), part.extents
+        center = complex(target.mean())
+        size = float(np.sqrt(np.mean(np.abs(target - center) ** 2)))
+        own = part.designs(some.at), some.likeness, radius[some.at], middle[some.at]
+        some = some.some(sought.conditions.possible(UnlaidDesigns(part.chain, *own, size, center)))
+    if not len(some.at):
+        return some
+    designs, scale, place, _ = _laid(part, some, sought)
+    return some.some(sought.conditions.held(LaidDesigns(part.chain, designs, scale, place, some.mirrored)))
 
 
 def _alike(descriptors: Number, one: Number, limit: Number, asked: Number) -> Number:

@@ -25,6 +25,9 @@ from compoundkin.structure import decompose
 
 # Poses of a turn at which conditions are looked at, and designs whose motion is looked at together.
 POSES, TOGETHER = 64, 256
+# Before designs are laid their sizes are known within this factor, and where they lie within this part of the curve's
+# radius; of those that are less like it nothing is known.
+NEARLY, ASIDE, LEAST_ALIKE = 1.1, 0.05, 0.3
 # Steps of a refinement keep so much more of a transmission angle (radians), for what lies between poses.
 BETWEEN = 0.01
 
@@ -49,6 +52,21 @@ class LaidDesigns(NamedTuple):
         return np.where(self.mirrored.reshape(shape), np.conj(found), found)
 
 
+class UnlaidDesigns(NamedTuple):
+    """Designs of a chain (designs, numbers) that are not laid on a curve: arrays (designs,) of what is known before.
+
+    `likeness` to the curve; `radius` and `middle` of their own. The curve has a `size`, its RMS radius, and a `center`.
+    """
+
+    chain: CurveChain
+    designs: Number
+    likeness: Number
+    radius: Number
+    middle: Number
+    size: float
+    center: complex
+
+
 class CurveConditions(NamedTuple):
     """Conditions on linkages that trace a curve, and the greatest sum of their lengths."""
 
@@ -68,6 +86,29 @@ class CurveConditions(NamedTuple):
                 break
             held[left] = holds(laid.some(left))
         return held
+
+    def possible(self, seen: UnlaidDesigns) -> Number:
+        """Return which designs may hold them where they will lie, (designs,): what plainly fails need not be laid."""
+        plan = _points(seen.chain)
+        places, scale = plan.places(seen), (seen.likeness * seen.size / seen.radius)[:, None]
+        lengths = scale * np.abs(places[:, plan.ends[1]] - places[:, plan.ends[0]])
+        may = np.ones(len(scale), bool)
+        if self.wanted.lengths is not None:
+            least, greatest = self.wanted.lengths
+            may &= ((lengths >= least / NEARLY) & (lengths <= greatest * NEARLY)).all(axis=1)
+        pivots = places[:, plan.pivots]
+        if self.size is not None:
+            ground = scale[:, 0] * np.abs(pivots[:, 0] - pivots[:, -1])
+            may &= lengths.sum(axis=1) + ground <= self.size * NEARLY
+        if self.wanted.region is not None:
+            # whichever way it lies, a pivot is as far from the middle
+            far, aside = scale * np.abs(pivots - seen.middle[:, None]), ASIDE * seen.size
+            corners = self.wanted.region - seen.center
+            nearest = 0.0 if inside(np.zeros(1, complex), corners)[0] else _distance(corners)
+            may &= ((far * NEARLY + aside >= nearest) & (far / NEARLY - aside <= np.abs(corners).max())).all(axis=1)
+        may |= seen.likeness < LEAST_ALIKE
+        may[may] = self._transmits(seen.chain, seen.designs[may])
+        return may
 
     def _pivots(self, laid: LaidDesigns) -> Number:
         held, region = np.ones(len(laid.designs), bool), self.wanted.region
@@ -104,18 +145,20 @@ class CurveConditions(NamedTuple):
             held[first : first + TOGETHER] = self._moving(laid.some(np.arange(len(held))[first : first + TOGETHER]))
         return held
 
-    def _moving(self, laid: LaidDesigns) -> Number:
-        chain, designs = laid.chain, laid.designs
-        designs = np.repeat(designs, 2, axis=0) if len(designs) == 1 else designs
-        call = Call({CRANK: turn(POSES)}, chain.dimensions(designs))
-        held = np.ones(len(laid.designs), bool)
-        if self.wanted.transmission:
-            found, clear = _indices(chain).programs.unscreened(call)
+    def _transmits(self, chain: CurveChain, designs: Number) -> Number:
+        """Return which designs have the least transmission angle over a turn, wherever they lie."""
+        held = np.ones(len(designs), bool)
+        if self.wanted.transmission and len(designs):
+            found, clear = _indices(chain).programs.unscreened(_turning(chain, designs))
             held &= clear[: len(held)]
             for index in found.values():
                 held &= (index >= np.sin(self.wanted.transmission)).all(axis=1)[: len(held)]
+        return held
+
+    def _moving(self, laid: LaidDesigns) -> Number:
+        chain, held = laid.chain, self._transmits(laid.chain, laid.designs)
         if self.wanted.obstacles and held.any():
-            found, clear = _places(chain).programs.unscreened(call)
+            found, clear = _places(chain).programs.unscreened(_turning(chain, laid.designs))
             held &= clear[: len(held)]
             at = {name.removesuffix(f".{POSITION}"): laid.laid(z[: len(held)] + np.zeros(POSES))
                   for name, z in found.items()}  # fmt: skip
@@ -123,6 +166,18 @@ class CurveConditions(NamedTuple):
                 for obstacle in self.wanted.obstacles:
                     held[held] &= ~meets(at[a][held], at[b][held], obstacle).any(axis=1)
         return held
+
+
+def _turning(chain: CurveChain, designs: Number) -> Call:
+    """Return a call of a chain's programs over a turn, for two designs or more."""
+    return Call({CRANK: turn(POSES)}, chain.dimensions(np.repeat(designs, 2, axis=0) if len(designs) == 1 else designs))
+
+
+def _distance(corners: Number) -> float:
+    """Return how far the sides of a polygon are from zero."""
+    way = np.roll(corners, -1) - corners
+    part = np.clip(-(corners * np.conj(way)).real / np.maximum(np.abs(way) ** 2, np.finfo(float).tiny), 0.0, 1.0)
+    return float(np.abs(corners + part * way).min())
 
 
 def keeps_transmission(chain: CurveChain, designs: Number, least: float) -> Number:
@@ -151,7 +206,7 @@ class _ChainPoints(NamedTuple):
     pivots: list[int]
     ends: Number
 
-    def places(self, laid: LaidDesigns) -> Number:
+    def places(self, laid: LaidDesigns | UnlaidDesigns) -> Number:
         """Return the points of designs in units of the chain, (designs, points)."""
         return laid.chain.measures(laid.designs) @ self.of_numbers + self.fixed
 

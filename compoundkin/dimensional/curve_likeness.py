@@ -40,11 +40,12 @@ def interpolated_rows(at: Number, x: Number, y: Number, long: float = 1.0) -> Nu
     return np.interp((rows + at).ravel(), (rows + x).ravel(), y.ravel()).reshape(at.shape)
 
 
-def coefficients(curves: Number) -> tuple[Number, Number]:
-    """Return the descriptors of closed curves, (curves, 2 HARMONICS), and their RMS radii (curves,)."""
-    found = np.fft.fft(resampled(curves, SAMPLES), axis=1)[:, ORDERS] / SAMPLES
+def coefficients(curves: Number) -> tuple[Number, Number, Number]:
+    """Return the descriptors of closed curves, (curves, 2 HARMONICS), their RMS radii and their middles (curves,)."""
+    every = np.fft.fft(resampled(curves, SAMPLES), axis=1) / SAMPLES
+    found = every[:, ORDERS]
     radius = np.sqrt((np.abs(found) ** 2).sum(axis=1))
-    return found / np.where(radius > 0.0, radius, 1.0)[:, None], radius
+    return found / np.where(radius > 0.0, radius, 1.0)[:, None], radius, every[:, 0]
 
 
 def likeness(descriptors: Number, wanted: Number) -> tuple[Number, Number]:

@@ -21,8 +21,9 @@ from compoundkin.dimensional import atlas_designs, curve_fitting, defects
 from compoundkin.dimensional import coupler_atlas as atlases
 from compoundkin.dimensional.coupler_atlas import CouplerAtlas, coupler_atlas
 from compoundkin.dimensional.curve_chains import CurveChain, Laying, curve_chains, turn
+from compoundkin.dimensional.curve_conditions import CurveConditions, LaidDesigns, UnlaidDesigns
 from compoundkin.dimensional.curve_likeness import coefficients, likeness, mean_distance, resampled
-from compoundkin.dimensional.tasks import extent, read_task
+from compoundkin.dimensional.tasks import Conditions, extent, read_task
 from compoundkin.errors import InvalidInput
 from compoundkin.files.curve_files import read_curve
 from compoundkin.synthesis.chains.mechanism_names import structure_name
@@ -372,12 +373,42 @@ def test_chains_of_eight_links_go_on_from_those_of_six_that_are_kept(monkeypatch
     chains = (six, six.grown("frame", 1), six.grown("crank", 1))
     monkeypatch.setattr(atlas_designs, "curve_chains", lambda links: chains)
     plan = atlas_designs.AtlasPlan(8, 300, 1)
-    whole = list(atlas_designs._made(plan, {}, None))
-    kept = {chain.plan: atlas_designs.AtlasPart(chain, len(one), (one, found)) for _, chain, one, found in whole[:2]}
-    ((k, chain, designs, found),) = atlas_designs._made(plan, kept, None)
+    whole = [drawn for _, _, drawn in atlas_designs._made(plan, {}, None)]
+    kept = {chain.plan: atlas_designs.AtlasPart(chain, 100, one) for chain, one in zip(chains[:2], whole, strict=False)}
+    ((k, chain, drawn),) = atlas_designs._made(plan, kept, None)
     assert (k, chain) == (2, chains[2])
-    np.testing.assert_array_equal(designs, whole[2][2])
-    np.testing.assert_array_equal(found, whole[2][3])
+    for one, two in zip(drawn, whole[2], strict=True):
+        np.testing.assert_array_equal(one, two)
+
+
+@pytest.mark.parametrize("tilt", [1.0, np.exp(0.7j)])
+def test_what_is_not_laid_would_not_hold(tilt: complex) -> None:
+    """Conditions are known to fail before a design is laid, where they fail by much: against all, laid."""
+    blot = (EGG + 0.8j * np.exp(3j * np.angle(EGG - EGG.mean()))) * tilt
+    sought = atlases.SoughtCurve(blot, True)
+    asked = [
+        {"region": [(-1, 1), (9, 9)]}, {"region": [(12, 12), (14, 20)]}, {"region": [(60, 0), (90, 40)]},
+        {"size": 14.0}, {"size": 30.0, "region": [(-4, -4), (9, 9)]}, {"size": 60.0, "angle": 0.6},
+    ]  # fmt: skip
+    dropped = kept = 0
+    for part in coupler_atlas(6, 3_000).parts[::3]:
+        value, mirrored = likeness(part.descriptors, coefficients(blot[None])[0][0])
+        ranked = atlases._Ranked(value, np.arange(len(value)), mirrored)
+        designs, scale, place, _ = atlases._laid(part, ranked, sought)
+        for one in asked:
+            wanted = Conditions.of(one.get("region"), None, None, one.get("angle", 0.0), False, "accuracy")
+            conditions = CurveConditions(wanted, one.get("size"))
+            holds = conditions.held(LaidDesigns(part.chain, designs, scale, place, mirrored))
+            found = atlases._held(part, ranked, sought._replace(conditions=conditions)).at
+            np.testing.assert_array_equal(found, np.flatnonzero(holds))
+            radius, middle = part.extents
+            size = float(np.sqrt(np.mean(np.abs(sought.seen(64) - sought.seen(64).mean()) ** 2)))
+            may = conditions.possible(
+                UnlaidDesigns(part.chain, part.designs(), value, radius, middle, size, complex(sought.seen(64).mean()))
+            )
+            dropped, kept = dropped + int((~may).sum()), kept + int(holds.sum())
+    assert kept > 100
+    assert dropped > 3000
 
 
 def test_folders_without_an_atlas_are_told(tmp_path: Path) -> None:
@@ -389,7 +420,7 @@ def test_folders_without_an_atlas_are_told(tmp_path: Path) -> None:
         CouplerAtlas.open(tmp_path)
     with pytest.raises(InvalidInput, match=r"it has other files, such as mine\.txt"):
         coupler_atlas(4, 100, folder=tmp_path)
-    (tmp_path / "atlas.json").write_text('{"format": 2, "links": 5}', encoding="utf-8")
+    (tmp_path / "atlas.json").write_text('{"format": 3, "links": 5}', encoding="utf-8")
     with pytest.raises(InvalidInput, match=r"atlas\.json: it cannot be read: it is damaged"):
         CouplerAtlas.open(tmp_path)
 
