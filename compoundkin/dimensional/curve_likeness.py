@@ -13,6 +13,8 @@ from compoundkin.base.arrays import TURN, Number
 
 # Samples of a curve, its harmonics on either side that are kept, and starts that are tried along it.
 SAMPLES, HARMONICS, STARTS = 64, 16, 64
+# Descriptors that are compared at once: they stay in the processor's cache.
+COMPARED = 128
 # Places of curves whose distance is measured.
 MEASURED = 2000
 ORDERS = np.concatenate([np.arange(1, HARMONICS + 1), np.arange(-HARMONICS, 0)])
@@ -54,6 +56,12 @@ def likeness(descriptors: Number, wanted: Number) -> tuple[Number, Number]:
     It is the greatest over rotation, start, direction and mirror image: over all rotations the correlation is the
     absolute value of one number for each start.
     """
+    parts = [descriptors[k : k + COMPARED] for k in range(0, len(descriptors), COMPARED)] or [descriptors]
+    values, mirrored = zip(*(_likeness(part, wanted) for part in parts), strict=True)
+    return np.concatenate(values), np.concatenate(mirrored)
+
+
+def _likeness(descriptors: Number, wanted: Number) -> tuple[Number, Number]:
     from scipy.fft import ifft  # in single precision, as descriptors are kept
 
     wanted = np.conj(wanted).astype(np.complex64)
