@@ -31,7 +31,7 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import WRITTEN
 from compoundkin.structure import Structure
 from compoundkin.studio.edited_document import called, written_place
-from compoundkin.studio.wheels import stated_numbers
+from compoundkin.studio.wheels import PROGRAM, lift_of, stated_numbers
 
 if TYPE_CHECKING:
     from compoundkin.programs.dimensions import FreeDimension
@@ -105,9 +105,10 @@ def _counts(mechanism: Mechanism) -> Iterator[Reply]:
     for array, tables in document(mechanism).items():
         for table in tables if array in WRITTEN else ():
             for (key, part), told in stated_numbers(array, table).items():
-                value, is_whole = table[key][part], isinstance(part, int)
+                is_lift, is_whole = part == PROGRAM, isinstance(part, int)
+                value = lift_of(table[key][part]) if is_lift else table[key][part]
                 yield {"pair": called(table, array), "entry": [key, part], "told": told, "value": value,
-                       "is_whole": is_whole}  # fmt: skip
+                       "is_whole": is_whole, "is_angle": is_lift and "pivot" in table[key]}  # fmt: skip
 
 
 def changed_dimensions(

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import cmath
 from collections.abc import Mapping
+from itertools import accumulate
 from math import degrees
 from typing import Any
 
@@ -30,6 +31,8 @@ WHEEL, CAM = "wheel", "cam"
 # The radii of profiles that are changed in the text, and what they are.
 RADII = {"radius": "radius of the disc", "base": "base circle"}
 TEETH = "teeth"
+# The motion for which a profile is made, by its pieces: what is changed of it is its lift.
+PROGRAM = "program"
 # A follower of a cam dwells in the turn that its rise and its return leave.
 TURN = 360.0
 
@@ -204,11 +207,34 @@ def stated_numbers(array: str, table: Mapping[str, Any]) -> dict[tuple[str, int 
         elif key.kind == "profile" and isinstance(value, dict):
             found |= {(key.name, part): told for part, told in RADII.items()
                       if isinstance(value.get(part), int | float)}  # fmt: skip
+            if lift_of(value.get(PROGRAM)):
+                found[key.name, PROGRAM] = "lift"
     return found
 
 
+def lift_of(program: Any) -> float:
+    """Return how far the follower of a motion program goes from its lowest to its highest; 0 for what is none.
+
+    >>> lift_of([{"law": "cycloidal", "over": 90, "rise": 30}, {"law": "dwell", "over": 90}, {"rise": -20}])
+    30.0
+    """
+    rises = [one.get("rise", 0.0) for one in program if isinstance(one, dict)] if isinstance(program, list) else []
+    if not all(isinstance(one, int | float) for one in rises):
+        return 0.0
+    places: list[float] = [0.0, *accumulate(rises)]
+    return float(max(places) - min(places))
+
+
+def _scale_program(program: list[dict[str, Any]], lift: float) -> None:
+    """Give a motion program another lift, all its rises in the same ratio: it ends where it ended."""
+    ratio = lift / lift_of(program)
+    for one in program:
+        if one.get("rise"):
+            one["rise"] = float(f"{one['rise'] * ratio:.12g}")
+
+
 def stated_number(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
-    """Give a number of a pair another value, where it is written: teeth, the radius of a profile."""
+    """Give a number of a pair another value, where it is written: teeth, the radius of a profile, the lift of a law."""
     name, entry, value = word_in(edit, "pair"), edit.get("entry"), positive_in(edit, "value")
     if not value:
         raise refused("it is no number above 0", "give pair, entry and value")
@@ -220,6 +246,9 @@ def stated_number(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
             continue
         if isinstance(part, int) and value % 1:
             raise refused(f"{value:g} teeth cannot be", "give a whole number")
+        if part == PROGRAM:
+            _scale_program(table[key][PROGRAM], value)
+            return {"pair": name}
         table[key][part] = int(value) if isinstance(part, int) else sheet.number(value)
         return {"pair": name}
     raise UnknownName(Problem(name, "there is no such number in the text"))

@@ -224,6 +224,25 @@ def test_forces_are_those_of_the_analysis() -> None:
     assert "nothing acts" in answer(shipped_text("six-bar"), {"ask": "forces"})["problems"][0]["what"]
 
 
+@pytest.mark.parametrize(
+    ("name", "lift", "is_angle"),
+    [("disc-cam-roller-program", 30.0, False), ("oscillating-roller-follower", 25.0, True)],
+)
+def test_the_lift_of_a_law_is_a_dimension(name: str, lift: float, is_angle: bool) -> None:
+    """All rises and returns grow in one ratio, so that the follower comes back to where it was."""
+    text = shipped_text(name)
+    (found,) = (one for one in reply(text, "dimensions")["counts"] if one["told"].startswith("lift"))
+    assert (found["value"], found["is_angle"]) == (lift, is_angle)
+    changed = edited(text, {"do": "count", "pair": found["pair"], "entry": found["entry"], "value": 12.3})
+    (again,) = (one for one in reply(changed, "dimensions")["counts"] if one["told"].startswith("lift"))
+    assert again["value"] == pytest.approx(12.3)
+    motion = ck.solve(loads(changed), order=0)
+    link = motion.links["follower"]
+    course = np.rad2deg(link.angle) if is_angle else link.origin.position.imag
+    assert np.ptp(course) == pytest.approx(12.3, abs=1e-6)
+    assert course[-1] == pytest.approx(course[0], abs=1e-6)
+
+
 def test_teeth_and_radii_of_profiles_are_changed_in_the_text() -> None:
     """The ratio, the lift of the follower are then those of the other number; what is wrong is refused."""
     bars = [{"do": "bar", "from": {"at": [x, 0]}, "to": {"at": [x, 20]}} for x in (0, 100)]

@@ -11,10 +11,10 @@ const lazy = (holder, name, make) => {
   Object.defineProperty(holder, name, { configurable: true, enumerable: true, get: () => put(make())[name] });
 };
 
-// A number that the browser's program does not have: teeth, a radius of a profile. It is changed in the text.
+// A number that the browser's program does not have: teeth, a radius of a profile, the lift of a law. It is changed in the text.
 class Count {
-  constructor({ pair, entry, told, value, is_whole: isWhole }, unit) {
-    Object.assign(this, { owner: pair, entry, label: told, spoken: told, value, isWhole, unit: isWhole ? "" : unit, step: isWhole ? 1 : value / 20 });
+  constructor({ pair, entry, told, value, is_whole: isWhole, is_angle: isAngle }, unit) {
+    Object.assign(this, { owner: pair, entry, label: told, spoken: told, value, isWhole, unit: isWhole ? "" : isAngle ? "°" : unit, step: isWhole ? 1 : value / 20 });
   }
 
   get() { return this.value; }
