@@ -84,7 +84,11 @@ class CallForm(NamedTuple):
 
 def _is_point(pair: tuple[Any, ...]) -> bool:
     """Tell whether a pair is that of a point: two finite real numbers."""
-    return len(pair) == 2 and all(NUMBERS.get(type(x)) is float and -LARGEST_FLOAT <= x <= LARGEST_FLOAT for x in pair)
+    if len(pair) != 2:
+        return False
+    x, y = pair
+    are_real = NUMBERS.get(type(x)) is float and NUMBERS.get(type(y)) is float
+    return are_real and -LARGEST_FLOAT <= x <= LARGEST_FLOAT and -LARGEST_FLOAT <= y <= LARGEST_FLOAT
 
 
 def _is_dimension(arguments: Sequence[Any], k: int) -> bool:
