@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 import shutil
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
 from functools import cache
 from pathlib import Path
 from threading import Barrier
@@ -310,7 +311,9 @@ def test_lists_that_are_no_table_are_told() -> None:
 
 @pytest.mark.parametrize("far", [1e6, 1e300])
 def test_poses_that_are_far_apart_are_not_looked_between_for_ever(far: float) -> None:
-    with pytest.warns(LikelySlip, match="look like degrees"):
+    # where every floating number is whole, that says nothing of degrees
+    warned = pytest.warns(LikelySlip, match="look like degrees") if far < 2.0**52 else nullcontext()
+    with warned:
         assert rocker(4, values=[0.0, far]).run().assembled.all()
 
 
