@@ -27,7 +27,7 @@ from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import SolvingOrder
 
 
-def spacings(order: SolvingOrder) -> Mapping[str, float]:
+def driver_spacings(order: SolvingOrder) -> Mapping[str, float]:
     """Return the spacing of each driver at which `solve` searches for change points."""
     return {name: order.unit(name) * SPACING for name in order.structure.driven}
 
@@ -195,7 +195,7 @@ class DrawnApproach(ShortRepr):
             return None
         ways = {name: value - (homes[name] or 0.0) for name, value in given.items()}
         ways = {name: way - TURN * round(way / TURN) if angles[name] else way for name, way in ways.items()}
-        count = max(_steps(abs(way), self._spacings[name]) for name, way in ways.items())
+        count = max(_steps(abs(way), self.spacings[name]) for name, way in ways.items())
         if any(way and not angles[name] for name, way in ways.items()):
             count = max(count, FEWEST)
         count *= finer
@@ -230,11 +230,12 @@ class DrawnApproach(ShortRepr):
             home = end = above
         else:
             home, end = (above, high) if abs(above - high) < abs(low - below) else (below, low)
-        return ApproachWay(name, home, end - home, is_angle, self._spacings[name])
+        return ApproachWay(name, home, end - home, is_angle, self.spacings[name])
 
     @cached_property
-    def _spacings(self) -> Mapping[str, float]:
-        return spacings(self.reference.solving_order)
+    def spacings(self) -> Mapping[str, float]:
+        """The spacing of each driver at which `solve` searches for change points."""
+        return driver_spacings(self.reference.solving_order)
 
     def drawn(self, name: str) -> Number | None:
         """Return the value at which a driver is drawn; None where it is not drawn."""
@@ -245,7 +246,7 @@ class DrawnApproach(ShortRepr):
         return self._drawn[name]
 
     def is_passed(self, values: Mapping[str, Number]) -> bool:
-        """Tell whether there is none to values, or the only driver surely passes its drawn value."""
+        """Tell whether values need no approach: nothing is drawn, or the only driver surely passes its drawn value."""
         if not self.has_configuration:
             return True
         if len(values) != 1:

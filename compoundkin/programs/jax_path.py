@@ -23,7 +23,7 @@ from compoundkin.kinematics.driver_values import by_name
 from compoundkin.model.attributes import RATES
 from compoundkin.model.geometry import vector
 from compoundkin.programs.call_numbers import Call
-from compoundkin.programs.drawn_approach import spacings
+from compoundkin.programs.drawn_approach import driver_spacings
 from compoundkin.programs.graph.operation_graph import (
     CONSTANT,
     DRIVE,
@@ -129,7 +129,7 @@ class JaxPath(ShortRepr):
 
         if not margin.ndim:
             return margin >= safe_margin(1.0)
-        longest, spacing = jnp.ones(()), spacings(self.path.reference.solving_order)
+        longest, spacing = jnp.ones(()), driver_spacings(self.path.reference.solving_order)
         for one, value in drives.items():
             if one.part == "0" and jnp.ndim(value) and jnp.shape(value)[-1] > 1:
                 steps = jnp.max(jnp.abs(jnp.diff(jnp.asarray(value))), axis=-1)

@@ -20,7 +20,7 @@ from compoundkin.base.display import ShortRepr
 from compoundkin.kinematics.curve.change_points import NEAR
 from compoundkin.kinematics.curve.driver_path import MOST
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, numbers_of_designs
-from compoundkin.programs.drawn_approach import ClearApproaches, DrawnApproach, spacings
+from compoundkin.programs.drawn_approach import ClearApproaches, DrawnApproach
 from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, HOLDS, LEAST, InputNumber, OperationGraph
 from compoundkin.programs.recording.recorded_limits import CLOSE, RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import Recording, record_mechanism
@@ -52,13 +52,13 @@ class ScreenedDesigns(ShortRepr):
 def safe_margin(longest: Any) -> Any:
     """Return the margin above which a design needs no screening, of JAX or of NumPy.
 
-    It grows with the square of the longest step of a driver, in its `spacings`; who asks counts steps below one as one.
+    It grows with the square of the longest step of a driver, in its spacing; who asks counts steps below one as one.
     """
     return NEAR * longest**2
 
 
-def _longest_step(value: Number) -> float:
-    """Return the longest step of a driver from pose to pose."""
+def _longest_of(value: Number) -> float:
+    """Return the longest step among a driver's values, (1 or designs, poses), from pose to pose."""
     row = value[0]
     steps = row[1:] - row[:-1] if len(value) == 1 else (value[:, 1:] - value[:, :-1]).ravel()
     # places of the extremes are found in less time than their values
@@ -89,11 +89,11 @@ class StepProgram(ShortRepr):
         graph = OperationGraph()
         ends = [InputNumber(DRIVE, "", part) for part in ("before", "after")]
         numbers = CallNumbers(dict.fromkeys(ends, value), value.shape, frozenset())
-        return ReadyProgram.of(graph, {"": (longest_step(graph, *map(graph.input, ends)),)}, numbers, self.backend)
+        return ReadyProgram.of(graph, {"": (negated_step(graph, *map(graph.input, ends)),)}, numbers, self.backend)
 
 
-def longest_step(graph: OperationGraph, before: int, value: int) -> int:
-    """Return the node of the longest step between values and those before them, less than zero."""
+def negated_step(graph: OperationGraph, before: int, value: int) -> int:
+    """Return the node of the longest step between values and those before them, negated: programs find least values."""
     step = graph.apply("abs", graph.apply("sub", value, before))
     return graph.apply(LEAST, graph.apply("neg", step))
 
@@ -115,7 +115,7 @@ class LimitScreening(ShortRepr):
         """Tell whether surely no design needs screening, as `needed` finds out of all of them.
 
         `numbers` gives those of the call, where the drivers' values are not enough to know; `steps` are the longest of
-        drivers, less than zero, as far as a program computed them beside.
+        drivers, negated, as far as a program computed them beside.
         """
         margin = least.item() if least.size == 1 else float(least.min())
         return (
@@ -132,16 +132,16 @@ class LimitScreening(ShortRepr):
         approach = self.approach.values(values) if way is None else way.values
         if approach is None or _vary_along_motion(numbers):
             return approach is None
-        is_clear = bool(np.all(self._early(numbers, approach) >= NEAR))
+        is_clear = bool(np.all(self._margins_on(numbers, approach) >= NEAR))
         if way is not None:
-            self._clear.explore(design, way, numbers.extent[1] == 1, partial(self._early, numbers))
+            self._clear.explore(design, way, numbers.extent[1] == 1, partial(self._margins_on, numbers))
         return is_clear
 
     @cached_property
     def _clear(self) -> ClearApproaches:
         return ClearApproaches()
 
-    def _early(self, numbers: CallNumbers, approach: Mapping[str, Number]) -> Number:
+    def _margins_on(self, numbers: CallNumbers, approach: Mapping[str, Number]) -> Number:
         """Return the least margins of groups on an approach, (1 or designs, values)."""
         resting = _resting(numbers, approach)
         return self._program(self._poses, resting).run(resting)[MARGIN]
@@ -154,22 +154,21 @@ class LimitScreening(ShortRepr):
         longest = 0.0
         for name, value in values.items():
             if name in steps:
-                longest = max(longest, -steps[name].item() / self._spacings[name])
+                longest = max(longest, -steps[name].item() / self.approach.spacings[name])
             elif value.shape[1] > 1:
-                step = _longest_step(value) if value.size < MANY_VALUES else self._steps.longest(value)
-                longest = max(longest, step / self._spacings[name])
+                step = _longest_of(value) if value.size < MANY_VALUES else self._steps.longest(value)
+                longest = max(longest, step / self.approach.spacings[name])
         return min(longest, float(MOST))
 
     @cached_property
     def _steps(self) -> StepProgram:
         return StepProgram(self.backend)
 
-    @cached_property
-    def _spacings(self) -> Mapping[str, float]:
-        return spacings(self.recording.solving_order)
-
     def needed(self, numbers: CallNumbers, least: Number) -> tuple[Number, Number]:
-        """Return which designs need screening, and which have to be solved whatever it says."""
+        """Return which designs need screening, and which have to be solved whatever it says: those near a limit early.
+
+        Early is before the first pose, on the approach from the drawing.
+        """
         if numbers.is_seeded:
             # their first poses were solved, and so is the rest near a limit
             known = numbers.given.get(HOLDS, np.ones((1, 1)))[:, 0] != 0.0
@@ -182,7 +181,8 @@ class LimitScreening(ShortRepr):
             return np.zeros_like(near), near | (approach is not None)
         if approach is None:
             return near, np.zeros_like(near)
-        early = np.array(np.broadcast_to(np.any(self._early(numbers, approach) < NEAR, axis=1), numbers.extent[:1]))
+        comes_near = np.any(self._margins_on(numbers, approach) < NEAR, axis=1)
+        early = np.array(np.broadcast_to(comes_near, numbers.extent[:1]))
         if early.any():
             # the way is looked at as a motion is
             screened = self.screen_all(_resting(numbers_of_designs(numbers, np.flatnonzero(early)), approach))
@@ -335,5 +335,5 @@ def _one_design(numbers: CallNumbers) -> tuple[float, ...] | None:
 
 
 def _vary_along_motion(numbers: CallNumbers) -> bool:
-    """Tell whether dimensions do."""
+    """Tell whether some dimension varies along the motion."""
     return any(value.shape[1] > 1 for one, value in numbers.given.items() if one.kind == DIMENSION)

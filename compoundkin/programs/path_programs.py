@@ -34,7 +34,7 @@ from compoundkin.programs.dimensions import (
 )
 from compoundkin.programs.drawn_approach import DrawnApproach
 from compoundkin.programs.graph.operation_graph import BEFORE, DRIVE, InputNumber
-from compoundkin.programs.limit_screening import LimitScreening, ScreenedDesigns, longest_step
+from compoundkin.programs.limit_screening import LimitScreening, ScreenedDesigns, negated_step
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.recorded_march import STEPS
@@ -135,7 +135,7 @@ class PathPrograms(ShortRepr):
     def program(self, numbers: CallNumbers, moving: tuple[str, ...] = ()) -> ReadyProgram[str]:
         """Return the program for numbers of this form; it computes all outputs, and then the least margin.
 
-        Last are the longest steps of the drivers `moving`, less than zero; their values a pose before are inputs too.
+        Last are the longest steps of the drivers `moving`, negated; their values a pose before are inputs too.
         """
         if (numbers.form, moving) not in self._programs:
             path = self.variant(numbers.still)
@@ -145,7 +145,7 @@ class PathPrograms(ShortRepr):
             for name in moving:
                 value, before = (InputNumber(DRIVE, name, part) for part in ("0", BEFORE))
                 given[before] = given[value]
-                nodes[f"{LEAST}{name}"] = (longest_step(graph, graph.input(before), graph.input(value)),)
+                nodes[f"{LEAST}{name}"] = (negated_step(graph, graph.input(before), graph.input(value)),)
             whole = replace(numbers, given=given)
             program = ReadyProgram.of(graph, nodes, whole, self.chosen_backend, carried)
             self._programs[numbers.form, moving] = program

@@ -368,8 +368,8 @@ def test_one_pose_after_another_is_known_to_be_clear(monkeypatch):
 def looked_at(monkeypatch):
     """Return the approaches whose margins are looked at from now on."""
     looks = []
-    early = LimitScreening._early
-    monkeypatch.setattr(LimitScreening, "_early", lambda *given: looks.append(given[-1]) or early(*given))
+    margins_on = LimitScreening._margins_on
+    monkeypatch.setattr(LimitScreening, "_margins_on", lambda *given: looks.append(given[-1]) or margins_on(*given))
     return looks
 
 
@@ -402,7 +402,7 @@ def test_poses_near_a_limit_are_computed_where_no_change_point_is_passed_on_the_
     monkeypatch.undo()
     for value, one in zip(poses, found, strict=True):
         way = path.programs.approach.values({drive.name: np.array([[value]])})
-        assert path.programs.limits._early(one.numbers, way).min() < NEAR
+        assert path.programs.limits._margins_on(one.numbers, way).min() < NEAR
         motion = ck.solve(mechanism, value)
         for letter in letters:
             np.testing.assert_allclose(one[letter], motion.points[letter].position, atol=1e-9 * motion.size)
