@@ -482,9 +482,10 @@ def _traced(one: _RefinedDesigns) -> tuple[Number, Number, Number, Number]:
     z, by, by_crank, clear = one.chain.slopes(one.designs, angles if target.has_window else angles[0])
     if not target.has_window:
         return z, by, by_crank, clear
-    # all of the turn is there, and no more than that is traced
+    # all of the turn is there, of a closed curve at its own poses, and no more than that is traced
     turned = np.abs(one.x[:, len(one.chain.numbers) + 1])
-    clear = clear & one.chain.curves(one.designs, POSES // 2)[1]
+    if not target.closed:
+        clear = clear & one.chain.curves(one.designs, POSES // 2)[1]
     is_free = target.timing is None or not target.timing.turn
     if is_free:
         clear &= (turned > LEAST_TURN) & (turned < TURN)
