@@ -11,10 +11,11 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.base.percentiles import percentiles_of
 from compoundkin.kinematics.quantities import ASSEMBLED
 from compoundkin.model.attributes import GREATEST, component_names, typeset_unit, with_unit
 from compoundkin.studies.study_program import StudyColumn
-from compoundkin.studies.study_result import StudyResult, percentiles_of
+from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.plot import canvas

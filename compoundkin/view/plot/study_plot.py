@@ -16,12 +16,13 @@ import numpy as np
 from compoundkin.base.arguments import checked, real_numbers
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem
+from compoundkin.base.percentiles import percentiles_by_column
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.quantities import ASSEMBLED
 from compoundkin.model.attributes import typeset_unit
 from compoundkin.studies.optimisation.optimum import Optimum
 from compoundkin.studies.study_program import StudyColumn
-from compoundkin.studies.study_result import StudyResult, percentiles_by_column
+from compoundkin.studies.study_result import StudyResult
 from compoundkin.studies.tolerances.output_tolerance import OutputTolerance
 from compoundkin.studies.tolerances.tolerance_analysis import ToleranceAnalysis
 from compoundkin.view.plot import canvas, plot_style

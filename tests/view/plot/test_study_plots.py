@@ -16,7 +16,8 @@ from tests import catalog
 
 pytest.importorskip("matplotlib")
 
-from compoundkin.studies import study_result, study_rows
+from compoundkin.base import percentiles
+from compoundkin.studies import study_rows
 from compoundkin.studies.study_result import pareto_rows
 from compoundkin.view.plot.scatter_plots import rank_correlation
 from compoundkin.view.plot.study_columns import drawn_rows
@@ -193,7 +194,7 @@ def test_what_is_read_piece_by_piece_is_drawn_as_the_whole(
 
     whole = drawn()
     monkeypatch.setattr(study_rows, "MOST_ROWS", 16)
-    monkeypatch.setattr(study_result, "MOST_SORTED", most)
+    monkeypatch.setattr(percentiles, "MOST_SORTED", most)
     for one, other in zip(drawn(), whole, strict=True):
         np.testing.assert_array_equal(one, other)
 
