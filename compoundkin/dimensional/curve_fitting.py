@@ -607,15 +607,18 @@ def _held_across(w: Number, tangent: Number, places: Number, closed: bool) -> _P
         (even * np.abs(gaps) ** 2 - odd * (across[rows, at] * np.conj(gaps) ** 2).real).sum(axis=1)
         + (share * (even * np.abs(own) ** 2 - odd * (beside * np.conj(own) ** 2).real)).sum(axis=1),
     )
-    if closed:
-        return pull
-    # the ends of what is traced are held at those of the target
+    return pull if closed else _with_ends_held(pull, w, places)
+
+
+def _with_ends_held(pull: _Pull, w: Number, places: Number) -> _Pull:
+    """Return what open curves are held to, with their ends at those of the target, whichever is nearer."""
     ends, both = w[:, [0, -1]], (places[:, [0, -1]], places[:, [-1, 0]])
     forth, back = (ends - each for each in both)
     own = ENDS**2 * np.where((np.abs(forth).sum(axis=1) <= np.abs(back).sum(axis=1))[:, None], forth, back)
-    pull.even[:, [0, -1]] += ENDS**2
-    pull.toward[:, [0, -1]] += own
-    return pull._replace(cost=pull.cost + (np.abs(own) ** 2).sum(axis=1) / ENDS**2)
+    even, toward = pull.even.copy(), pull.toward.copy()
+    even[:, [0, -1]] += ENDS**2
+    toward[:, [0, -1]] += own
+    return _Pull(even, pull.odd, toward, pull.cost + (np.abs(own) ** 2).sum(axis=1) / ENDS**2)
 
 
 def _squared_direction(way: Number) -> Number:

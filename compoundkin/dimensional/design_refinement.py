@@ -46,9 +46,10 @@ Residuals: TypeAlias = Callable[[Number, Number], tuple[Number, Number, Number]]
 def levenberg_steps(
     r: Number, j: Number, damping: Number, floor: float, *, of_greatest: bool = False
 ) -> tuple[Number, Number]:
-    """Return the steps (designs, numbers) that residuals (designs, n) with slopes (designs, n, numbers) ask for.
+    """Return steps (designs, numbers), and by how much they lower sums of squares (designs,) as far as slopes tell.
 
-    And by how much they lower the sums of squares, (designs,), as far as slopes can tell.
+    Residuals `r` are (designs, n), their slopes `j` (designs, n, numbers), weights `damping` of Levenberg's term
+    (designs,).
 
     A `floor` is added to the diagonal, for what residuals do not depend on: as it is, or as a part `of_greatest` of its
     entries, where residuals have units.

@@ -240,7 +240,8 @@ def test_of_both_ends_of_a_full_turn_the_one_with_the_drawn_value_is_the_drawn_p
     degrees = np.rad2deg(drawn) + np.linspace(360.0 * min(turns, 0), 360.0 * max(turns, 0), 73 if turns else 1)
     motion = quietly(mechanism, {"FG": np.deg2rad(degrees)}, order=0)
     expected = {-1: 72, 0: 0, 1: 0}[turns]
-    assert motion.followed.nearest_to_home[0] == expected
+    followed = motion.followed
+    assert followed.poses.of_poses[0, expected] == pytest.approx(followed.curve.path.home, abs=1e-9)
     assert abs(motion.points["B"].position[expected] - PLACES["B"]) < 1e-9
 
 

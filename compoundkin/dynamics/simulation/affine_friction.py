@@ -60,7 +60,7 @@ class AffineMotion(NamedTuple):
 
 @dataclass(eq=False)
 class RubbingChart(BodyChart):
-    """The chart of all links of a mechanism with what its pairs that have friction are among its equations."""
+    """The chart of all links of a mechanism, with the rows of its equations that press contacts with friction."""
 
     def __post_init__(self) -> None:
         super().__post_init__()

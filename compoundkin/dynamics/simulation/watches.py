@@ -105,7 +105,10 @@ class StickWatch(SlidingWatch):
 
 
 def watches(mechanism: Mechanism, events: Mapping[str, Any], stop: tuple[str, ...]) -> tuple[Watch, ...]:
-    """Return the watched functions: travel limits, one-sided contacts, and a user's own."""
+    """Return what is watched: friction, travel limits, one-sided contacts, a user's own functions, jumps of loads.
+
+    Raises InvalidInput for an event that is no function, and where `stop` names none.
+    """
     for name, function in events.items():
         if not callable(function):
             remedy = 'give a function of the state: lambda state: state["B.y"] - 20'

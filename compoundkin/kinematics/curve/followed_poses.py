@@ -135,13 +135,6 @@ class FollowedPoses(ShortRepr):
         return not all(np.all(self.curve.reaches(designs, end)) for end in ends)
 
     @property
-    def nearest_to_home(self) -> tuple[int, float]:
-        """The index of the first pose that is nearest to home, over all designs, and by how many places it is away."""
-        away = np.abs(self.poses.of_poses - self.curve.path.home).max(axis=0)
-        near = int(np.argmin(np.where(away < away.min() + CLOSE, 0.0, away)))
-        return near, float(away[near]) if away[near] > CLOSE else 0.0
-
-    @property
     def is_dense(self) -> bool:
         """Whether the poses are so near to each other that no change point hides between them."""
         places, (first, last) = self.poses.of_poses, self.curve.path.ends
