@@ -31,7 +31,7 @@ from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs import WRITTEN
 from compoundkin.structure import Structure
 from compoundkin.studio.edited_document import called, written_place
-from compoundkin.studio.wheels import PROGRAM, lift_of, stated_numbers
+from compoundkin.studio.wheels import PROGRAM, lift_of, numbers_in_text
 
 if TYPE_CHECKING:
     from compoundkin.programs.dimensions import FreeDimension
@@ -104,7 +104,7 @@ def _counts(mechanism: Mechanism) -> Iterator[Reply]:
 
     for array, tables in document(mechanism).items():
         for table in tables if array in WRITTEN else ():
-            for (key, part), told in stated_numbers(array, table).items():
+            for (key, part), told in numbers_in_text(array, table).items():
                 is_lift, is_whole = part == PROGRAM, isinstance(part, int)
                 value = lift_of(table[key][part]) if is_lift else table[key][part]
                 yield {"pair": called(table, array), "entry": [key, part], "told": told, "value": value,

@@ -197,7 +197,7 @@ def _swinging_follower(sheet: EditedDocument, centre: complex, letter: str, foll
     return {"pivot": sheet.pair(to), "arm": sheet.number(abs(arm)), "side": side}
 
 
-def stated_numbers(array: str, table: Mapping[str, Any]) -> dict[tuple[str, int | str], str]:
+def numbers_in_text(array: str, table: Mapping[str, Any]) -> dict[tuple[str, int | str], str]:
     """Return the numbers of a pair's table that are changed in the text, by key and place there: what each is."""
     found: dict[tuple[str, int | str], str] = {}
     for key in declared_keys(WRITTEN[array]) if array in WRITTEN else ():
@@ -242,7 +242,7 @@ def stated_number(sheet: EditedDocument, edit: Edit) -> dict[str, Any]:
         raise refused(f"{entry!r} is no entry of a table", 'give such as ["teeth", 0] or ["profile", "base"]')
     key, part = entry
     for array, _, table in sheet.tables():
-        if (key, part) not in stated_numbers(array, table) or called(table, array) != name:
+        if (key, part) not in numbers_in_text(array, table) or called(table, array) != name:
             continue
         if isinstance(part, int) and value % 1:
             raise refused(f"{value:g} teeth cannot be", "give a whole number")

@@ -365,16 +365,16 @@ def _variant(template: _Template, seed: int, number: int, kinds: Sequence[str]) 
         values = {n: printed(v * f) for own, f in zip(template.varied, factors, strict=True) for n, v in own.items()}
         share = 1.0 if trial < WHOLE_TRIALS else template.least_share
         place, pace = rng.uniform(), rng.uniform(-1.0, 1.0)
-        # where all of the cycle has to assemble the pose is known without it, and takes a fraction of its time
-        is_known = not values or (template.is_whole and share == 1.0)
-        cycle = template.motion if is_known else template.solved(values, share)
+        # where all of the cycle has to assemble, the pose is known before it, and takes a fraction of its time
+        is_pose_first = bool(values) and template.is_whole and share == 1.0
+        cycle = template.motion if is_pose_first or not values else template.solved(values, share)
         mechanism = template.changed(values) if values and cycle is not None else template.mechanism
         motion = None if cycle is None else _at_pose(mechanism, cycle, place, pace, template.vary)
         # an overconstrained mechanism keeps its special dimensions, and its special positions with them
         reason = "" if motion is None else _special(motion, strict=trial < TRIALS // 2)
         if motion is None or reason:
             continue
-        if not (values and is_known) or template.solved(values, share) is not None:
+        if not is_pose_first or template.solved(values, share) is not None:
             return _exercise(number, mechanism, motion, kinds)
         reason = "it does not assemble wherever the given one does"
     what = f"no variant {number} was found among {TRIALS}: {reason or 'its poses do not assemble'}"
