@@ -217,7 +217,7 @@ def test_what_presses_a_contact_under_friction_and_at_stops_is_known_in_three_wa
         links, by = by_links(chart, here)
         n = len(links.free)
         links.begin(0.7, by[:n], by[n:])
-        known = contact_watches.pressed(contact, chart, here, state)
+        known = contact_watches.solved_pressing(contact, chart, here, state)
         assert abs(known) > 0.1
         assert tabulated_pressing(chart, contact, 0.7, value, speed) == pytest.approx(known, rel=1e-9)
         assert links.pressing(contact, 0.7, by[:n], by[n:]) == pytest.approx(known, rel=1e-9)

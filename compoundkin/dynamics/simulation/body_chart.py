@@ -41,7 +41,7 @@ from compoundkin.dynamics.simulation.pair_equations import (
     plain_number,
 )
 from compoundkin.dynamics.simulation.simulated_energy import sorted_loads
-from compoundkin.dynamics.simulation.stop_contacts import StopContact, holding, is_no_contact, pressed, sprung
+from compoundkin.dynamics.simulation.stop_contacts import StopContact, holding, is_no_contact, rates_under, sprung
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solving_order import SolvingOrder
@@ -153,7 +153,7 @@ class BodyChart:
     def followed_rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state, with the contacts at stops and in latches."""
         here = self._projected(time, values, speeds)
-        return pressed(self.closed, here, here.rates) if self.closed else here.rates
+        return rates_under(self.closed, here, here.rates) if self.closed else here.rates
 
     def unheld_rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state without the rigid contacts."""
@@ -350,7 +350,7 @@ class BodyState:
     def constraint(self) -> Number:
         """The forces in the pairs along all coordinates, with the contacts at stops and in latches."""
         free = sprung(self.chart.closed, self, self.rates)
-        found = pressed(self.chart.closed, self, self.rates)
+        found = rates_under(self.chart.closed, self, self.rates)
         given = self.forces[0] + self.forces[1]
         for one in self.chart.closed:
             if one.stop.is_elastic:

@@ -244,7 +244,7 @@ def stop_watches(chart: Chart) -> Iterator[ContactWatch]:
         elif release is not None:
             name = pair_meant(chart, release.pair).name
             text = f"the contact at {name} lets go"
-            yield LiftWatch(OPENS, text, False, True, item=release, margin=partial(pressed, name), pair=name)
+            yield LiftWatch(OPENS, text, False, True, item=release, margin=partial(solved_pressing, name), pair=name)
     for landing in (one for one in chart.open_pairs if one.contact is not None):
         yield LandWatch(LANDS, landing.pair.name, False, True, landing=landing)
 
@@ -256,8 +256,8 @@ def _latched(one: StopContact, chart: Chart, here: KnownState, state: Number) ->
     return abs(float(holding([other.at(here) for other in chart.rigid], here, free)[chart.rigid.index(one)]))
 
 
-def pressed(name: str, chart: Chart, here: KnownState, state: Number) -> float:
-    """Return the normal force in a contact."""
+def solved_pressing(name: str, chart: Chart, here: KnownState, state: Number) -> float:
+    """Return the normal force in a contact, by the forces at the state."""
     return pressing_force(_forces(chart, here, state), name)
 
 
@@ -286,7 +286,7 @@ def pressing(name: str, chart: Chart, time: float, state: Number) -> float:
         found = chart.pressing(name, time, state[:n], state[n : 2 * n])
     if found is not None:
         return found
-    return pressed(name, chart, chart.state(time, state[:n], state[n : 2 * n]), state)
+    return solved_pressing(name, chart, chart.state(time, state[:n], state[n : 2 * n]), state)
 
 
 def _joining(release: Release, chart: Chart, here: KnownState, state: Number) -> float:

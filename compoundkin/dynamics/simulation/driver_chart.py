@@ -22,7 +22,7 @@ from compoundkin.dynamics.simulation.driver_state import (
     prescribed_rates,
 )
 from compoundkin.dynamics.simulation.simulated_energy import sorted_loads
-from compoundkin.dynamics.simulation.stop_contacts import StopContact, is_no_contact, pressed, sprung
+from compoundkin.dynamics.simulation.stop_contacts import StopContact, is_no_contact, rates_under, sprung
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.groups.contract import equations_of
@@ -114,7 +114,7 @@ class DriverChart:
     def followed_rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state, between both sides of a jump where a load holds a speed."""
         free = self.free_rates(time, values, speeds)
-        return pressed(self._added, self.seen(time, values, speeds), free) if self._added else free
+        return rates_under(self._added, self.seen(time, values, speeds), free) if self._added else free
 
     def unheld_rates(self, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates of a state without the rigid contacts."""

@@ -115,8 +115,8 @@ def contacts_of(loads: Iterable[Load], state: KnownState) -> tuple[StopContact, 
     return tuple(found)
 
 
-def pressed(contacts: Sequence[StopContact], state: PushedState, free: Rates) -> Rates:
-    """Return the rates under the contacts of those without them."""
+def rates_under(contacts: Sequence[StopContact], state: PushedState, free: Rates) -> Rates:
+    """Return the rates under contacts at stops, from `free`, those without them."""
     found = sprung(contacts, state, free)
     rigid = [one.at(state) for one in contacts if not one.stop.is_elastic]
     if rigid:
