@@ -12,7 +12,12 @@ import subprocess
 import sys
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
+from importlib import import_module
+from inspect import isabstract
 from pathlib import Path
+from pkgutil import iter_modules
+from types import ModuleType
+from typing import Any
 
 import networkx as nx
 import pytest
@@ -20,9 +25,9 @@ import pytest
 import compoundkin
 from compoundkin.base.suffixes import SUFFIXES
 from compoundkin.kinematics.groups import DYADS
+from compoundkin.model import loads, profiles
 from compoundkin.model.attributes import ALIASES, CATALOGUE, DERIVED, MOTION_FIGURES
 from compoundkin.model.fields import Item
-from compoundkin.model.loads import WRITTEN as LOADS
 from compoundkin.model.pairs import KINDS
 from tests.source import (
     FILES,
@@ -127,13 +132,12 @@ def test_no_circle_of_files() -> None:
     only_shrinks(" ".join(sorted(circle)) for circle in nx.strongly_connected_components(graph) if len(circle) > 1)
 
 
-# Folders of kinds: one file each, however short.
-OF_KINDS = ("kinematics/groups/", "model/pairs/")
 BYTES_OF_A_FILE = 11_000  # on average, at least; it was 5,400 once
 
 
 def test_the_house_is_not_cut_finer() -> None:
     """A file is an idea, not a fragment: a new one is welcome, but not many short ones."""
+    # kinds have one file each, however short
     sizes = [path.stat().st_size for path in FILES if not where(path).startswith(OF_KINDS)]
     assert sum(sizes) / len(sizes) >= BYTES_OF_A_FILE
 
@@ -160,7 +164,26 @@ def test_public_names_are_few() -> None:
     assert sum(len(module.__all__) for module in modules) <= NAMES_OF_MODULES_AT_MOST
 
 
-# --- kinds of pairs, ways to solve groups -------------------------------------------------------------------
+# --- kinds of pairs, loads and profiles, ways to solve groups -----------------------------------------------
+
+
+def kinds_below(base: type[Any], folder: ModuleType) -> set[type[Any]]:
+    """What can be made of a base class, in the files of a folder."""
+    for file in iter_modules(folder.__path__):
+        import_module(f"{folder.__name__}.{file.name}")
+    below = {kind for one in base.__subclasses__() for kind in (one, *kinds_below(one, folder))}
+    return {kind for kind in below if kind.__module__.startswith(folder.__name__) and not isabstract(kind)}
+
+
+def test_registries_know_every_kind_by_its_own_name() -> None:
+    """They import its file when it is asked for: nobody would miss a line that is forgotten."""
+    listed = [*loads.WRITTEN.items(), *loads.ALONG_PAIRS.items()]
+    in_files = {kind for kind in kinds_below(loads.ListedLoad, loads) if hasattr(kind, "table")}
+    assert {kind for _, kind in listed} == in_files
+    assert [name for name, kind in listed if kind.table != name] == []
+    written = {kind for kind in kinds_below(profiles.Profile, profiles) if kind.keys}
+    assert {*profiles.WRITTEN.values()} == written
+    assert [name for name, kind in profiles.WRITTEN.items() if kind.kind != name] == []
 
 
 def test_kinds_are_named_in_their_own_folders_only() -> None:
@@ -297,7 +320,7 @@ BEGINNING = ("import compoundkin", "import compoundkin\ncompoundkin.load('four-b
 def test_what_a_mechanism_has_not_is_not_loaded(statement: str) -> None:
     """Kinds of pairs but pins and slides, loads, laws, profiles; whatever solves."""
     loaded = modules_loaded_by(statement)
-    kinds = {kind.__module__ for kind in (*KINDS.values(), *LOADS.values())}
+    kinds = {kind.__module__ for kind in (*KINDS.values(), *loads.WRITTEN.values())}
     used = {f"compoundkin.model.{name}" for name in ("pairs.revolute", "pairs.prismatic", "loads.mass")}
     assert loaded & kinds == used
     rooms = ("model.laws", "model.profiles", "base.curves", "structure", "kinematics", "files.json_schema")

@@ -141,8 +141,8 @@ MOST_BODIES = 4
 
 
 @dataclass(frozen=True)
-class _Kin:
-    """The configurations with the sign of the Jacobian that a group has. How many there are, and one of them.
+class _SameSign:
+    """The configurations in a branch's gaps with the sign of its Jacobian: how many there are, and one of them.
 
     Both are by design and place: `count` (designs, places), -1 where it is not known, and `states` (..., width).
     """
@@ -158,20 +158,22 @@ def with_returns(curve: Followed, k: int, home: GroupPath) -> GroupPath:
     A configuration that goes on beside the branch itself, or beside another one of its sign, is no return of it.
     """
     period = curve.path.period
-    kin = _kin(curve, k, home, period) if len(home.reach) <= MOST_DESIGNS else None
-    if kin is None:
+    alike = _same_sign(curve, k, home, period) if len(home.reach) <= MOST_DESIGNS else None
+    if alike is None:
         return home
-    todo, found = kin.count == 1, list[GroupPath]()
+    todo, found = alike.count == 1, list[GroupPath]()
     for _ in range(MOST_PIECES):
         if not todo.any():
             break
         every, i, rows = np.arange(len(todo)), np.argmax(todo, axis=1), todo.any(axis=1)
-        piece = followed_path(curve, k, np.where(rows[:, None], kin.states[every, i], np.nan)[:, None], kin.places[i])
+        piece = followed_path(
+            curve, k, np.where(rows[:, None], alike.states[every, i], np.nan)[:, None], alike.places[i]
+        )
         low, high = piece.reach[:, :1], piece.reach[:, 1:]
-        inside = (kin.places >= low) & (kin.places <= high)
+        inside = (alike.places >= low) & (alike.places <= high)
         todo = todo & ~inside
         todo[every, i] = False
-        keeps = rows & ~(inside & (kin.count > 1)).any(axis=1)
+        keeps = rows & ~(inside & (alike.count > 1)).any(axis=1)
         for other in (home, *found):
             keeps = keeps & ~_overlaps(piece.reach, other.reach, period)
         if keeps.any():
@@ -191,8 +193,8 @@ def _overlaps(piece: Number, home: Number, period: float) -> Number:
     return np.logical_or.reduce(beside)
 
 
-def _kin(curve: Followed, k: int, home: GroupPath, period: float) -> _Kin | None:
-    """Return the kin of a branch where it has a gap. None where it has none, or configurations are not known."""
+def _same_sign(curve: Followed, k: int, home: GroupPath, period: float) -> _SameSign | None:
+    """Return what has the sign of a branch in its gaps. None where it has none, or configurations are not known."""
     low, high = home.reach[:, :1], home.reach[:, 1:]
     places = _samples(curve.path)
     gone = ((places < low) | (places > high)) & (home.side != 0.0)[:, None]
@@ -203,17 +205,19 @@ def _kin(curve: Followed, k: int, home: GroupPath, period: float) -> _Kin | None
     designs, index = np.nonzero(gone)
     if not len(designs):
         return None
-    found = kin_at(curve, k, home, designs, places[index])
+    found = same_sign_at(curve, k, home, designs, places[index])
     if found is None:
         return None
     count, state = found
     counts = np.full(gone.shape, -1)
     states = np.full((*gone.shape, state.shape[-1]), np.nan)
     counts[designs, index], states[designs, index] = count, state
-    return _Kin(places, counts, states)
+    return _SameSign(places, counts, states)
 
 
-def kin_at(curve: Followed, k: int, home: GroupPath, designs: Number, places: Number) -> tuple[Number, Number] | None:
+def same_sign_at(
+    curve: Followed, k: int, home: GroupPath, designs: Number, places: Number
+) -> tuple[Number, Number] | None:
     """Return how many configurations have a branch's sign, and one of them. None where they are not known.
 
     `designs` and `places` are those of single poses. Where an earlier group is not assembled, the number is -1.
@@ -249,7 +253,7 @@ def why_no_return(curve: Followed, k: int, home: GroupPath, design: int, place: 
     """Say why a group does not come back at a pose of a gap."""
     if len(home.reach) > MOST_DESIGNS:
         return f"whether it comes back is looked for in motions of up to {MOST_DESIGNS} designs only"
-    found = kin_at(curve, k, home, np.array([design]), np.array([place]))
+    found = same_sign_at(curve, k, home, np.array([design]), np.array([place]))
     if found is None:
         return "not all its configurations are known, so that none can be told to be its own after a gap"
     count = int(found[0][0])
