@@ -69,13 +69,13 @@ class CallSeeds:
         """Return the seeds at first poses: continued from how the path is drawn, or solved for designs too far away."""
         designs = numbers.extent[0]
         first = replace(numbers, given={k: value[:, :1] for k, value in numbers.given.items()}, shape=(designs, 1))
-        route = None if self._are_several(numbers) else self.approach.route(numbers.driver_values, FINER)
+        route = None if self._have_own_routes(numbers) else self.approach.route(numbers.driver_values, FINER)
         if route is None:
             return _solved_seeds(path.seeds, first, self.by, path.mechanism.recording.signs)
         return self._continued(path, first, self._drawn_start(path, first, route), route)
 
-    def _are_several(self, numbers: CallNumbers) -> bool:
-        """Tell whether designs have drivers' values of their own, or the path several designs."""
+    def _have_own_routes(self, numbers: CallNumbers) -> bool:
+        """Tell whether designs go ways of their own: by their drivers' values, or as the path itself has several."""
         drives = (value for one, value in numbers.given.items() if one.kind == DRIVE)
         return any(value.shape[0] > 1 for value in drives) or any(map(np.ndim, self.own.values()))
 
@@ -164,6 +164,7 @@ def _in_configuration(motion: Motion, signs: Mapping[int, int]) -> Number:
 FINER = 4
 # So many steps lead from a path's own dimensions to a design's, where the states are corrected once more.
 CONTINUATION_STEPS = 8
+# So many poses of a continuation have the drivers at rest: the start, those steps, and the correction.
 CHANGING = CONTINUATION_STEPS + 2
 # Designs whose groups differ by more from the path's own (parts of the size, radians) are solved: of several
 # configurations they have the one nearest to the drawing, which may be another one there.
@@ -173,7 +174,10 @@ _MARGIN, _CERTAIN = InputNumber("least", "margin"), InputNumber("least", "certai
 
 @dataclass(frozen=True)
 class DesignContinuation(ShortRepr):
-    """A program that continues states of groups, over changing dimensions and then along a route of the drivers."""
+    """A program that continues states of groups, over changing dimensions and then along a route of the drivers.
+
+    `weights` make changes of states pure numbers: radians, or parts of the size.
+    """
 
     program: ReadyProgram[InputNumber]
     weights: Mapping[InputNumber, float]

@@ -39,9 +39,9 @@ APPROACHES_KEPT = 64
 
 
 class ApproachWay(NamedTuple):
-    """The way of the only driver from where it is drawn, at `home`, to the nearest value of a motion, so far on.
+    """The way of the only driver from `home`, where it is drawn, to the nearest value of a motion, `far` from there.
 
-    It is looked at in steps of `spacing` or less, at least so many.
+    It is looked at in steps of `spacing` or less, that of a length in FEWEST steps at least.
     """
 
     driver: str
@@ -90,8 +90,8 @@ class ClearApproaches(ShortRepr):
     ) -> None:
         """Look how far a design is clear: a whole turn, or twice as far as a way goes.
 
-        Others will be asked for where the way was that to one pose, or the design was asked for before. `margins` gives
-        those at values of drivers, (1, values).
+        That pays only where more calls are to come: after one for a single pose, and where a design is asked for again.
+        `margins` gives those at values of drivers, (1, values).
         """
         is_expected, self._last = is_pose or design == self._last, design
         if design is None or not is_expected:
@@ -118,7 +118,7 @@ def _clear_part(places: Number, way: ApproachWay, margins: Callable[[Mapping[str
 class DriverRoute(NamedTuple):
     """The drivers' values (1, values) from where they are drawn to the first pose of a motion.
 
-    That is the motion's nearest one, or others come first on the way.
+    It `is_nearest` where no other pose of the motion is nearer to the drawing.
     """
 
     values: Mapping[str, Number]
@@ -135,7 +135,7 @@ class DrawnApproach(ShortRepr):
 
     @cached_property
     def has_configuration(self) -> bool:
-        """Whether a configuration is given at any pose."""
+        """Whether the mechanism is shown anywhere, so that its drivers' values can be read off there."""
         return bool(self.shown.poses or self.shown.beside)
 
     def values(self, values: Mapping[str, Number]) -> Mapping[str, Number] | None:
