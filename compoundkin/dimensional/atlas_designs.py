@@ -21,7 +21,7 @@ from compoundkin.base.errors import InvalidInput, Problem, StudyStopped
 from compoundkin.base.suffixes import suffix_for
 from compoundkin.dimensional.curve_chains import ChainPlan, CurveChain, curve_chain, curve_chains
 from compoundkin.dimensional.curve_likeness import HARMONICS, coefficients
-from compoundkin.files.atomic import sweep, write_atomically
+from compoundkin.files.atomic import remove_leftovers, write_atomically
 from compoundkin.files.saved_files import parquet
 from compoundkin.studies.samples.random_samples import SobolSample
 from compoundkin.studies.study import ends_a_run, run_pieces, workers
@@ -154,7 +154,7 @@ def parts_in_folder(plan: AtlasPlan, folder: str | os.PathLike[str], on: Any = N
     parts = _parts(where, plan)
     kept = {part.chain.plan: part for part in parts if part.path is not None and part.path.exists()}
     if len(kept) < len(parts):
-        sweep(where, is_complete=False)
+        remove_leftovers(where, is_complete=False)
         fingerprint = hashlib.sha256(_definition(plan).encode()).hexdigest()[:16]
         for k, chain, drawn in _made(plan, kept, on):
             columns = {one.name: drawn.designs[:, n] for n, one in enumerate(chain.numbers)}
@@ -162,7 +162,7 @@ def parts_in_folder(plan: AtlasPlan, folder: str | os.PathLike[str], on: Any = N
             columns |= {one.name: drawn.extents[:, n] for n, one in enumerate(_EXTENTS)}
             content = part_content([*_numbers(chain), _DESCRIPTOR, *_EXTENTS], [columns], fingerprint)
             _write(where / _file(k), content)
-        sweep(where, is_complete=True)
+        remove_leftovers(where, is_complete=True)
     return parts
 
 

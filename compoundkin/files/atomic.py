@@ -96,8 +96,8 @@ def _beside(target: Path) -> Path:
 _LEFT, _YOUNG = re.compile(r"\..*\.[0-9a-f]{12}\.tmp", re.DOTALL), 3600
 
 
-def sweep(folder: Path, is_complete: bool) -> None:
-    """Remove temporary files of killed writers from a folder; while it `is_complete` not, old ones alone."""
+def remove_leftovers(folder: Path, is_complete: bool) -> None:
+    """Remove the temporary files that killed writers left in a folder; until it `is_complete`, only old ones."""
     for path in folder.iterdir():
         # another run may finish its file meanwhile
         with suppress(FileNotFoundError):

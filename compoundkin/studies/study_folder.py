@@ -25,7 +25,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, LikelySlip, Problem, StudyStopped, warn
 from compoundkin.base.suffixes import suffix_for
-from compoundkin.files.atomic import atomic_file, sweep, write_atomically
+from compoundkin.files.atomic import atomic_file, remove_leftovers, write_atomically
 from compoundkin.files.saved_files import parquet
 from compoundkin.studies.samples import sample_from
 from compoundkin.studies.samples.variations import variation_from
@@ -232,7 +232,7 @@ class FolderStore(RunStore):
 
     def missing(self) -> Iterator[range]:
         """Yield the rows that are in no part; removes old files of killed writers."""
-        sweep(self.folder.path, is_complete=False)
+        remove_leftovers(self.folder.path, is_complete=False)
         yield from self.folder.missing(len(self.plan))
 
     @property
@@ -253,7 +253,7 @@ class FolderStore(RunStore):
             raise StudyStopped(
                 Problem(str(self.folder.path), f"{missing} rows were written and are missing", "run again")
             )
-        sweep(self.folder.path, is_complete=True)
+        remove_leftovers(self.folder.path, is_complete=True)
         return RowsInFolder(self.head.columns, parts)
 
     def remainder(self) -> str:

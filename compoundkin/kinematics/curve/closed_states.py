@@ -41,7 +41,11 @@ def every_state(solver: GroupSolver, block: Block, most: int = MOST_BODIES_ENUME
 
 
 class ClosedStates:
-    """Where a closed state is looked for; `complete` where all bodies are drawn."""
+    """The states from which a closed one of a group is looked for.
+
+    A sketch has the points that are shown; `drawn` says whether any are, so that the nearest to them is wanted.
+    `complete` is whether all bodies of the group are.
+    """
 
     def __init__(
         self, order: SolvingOrder, solver: GroupSolver, block: Block, sketch: Mapping[str, Number], drawn: bool

@@ -54,11 +54,10 @@ class Turns:
 
 
 def turns_of(curve: Followed, k: int, link: str, known: tuple[Number, Block] | None = None) -> Turns:
-    """Follow the angle of a link of group `k` from home. There it is nearest to the drawn one or to zero.
+    """Return the angle of a link of group `k`, followed from home, where it is nearest to the drawn one or to zero.
 
-    A driven link is as many turns ahead of its drawn angle as its driver is.
-
-    `known` is what is solved already at the samples of the path, with others half way between.
+    A driven link is as many turns ahead of its drawn angle as its driver is. `known` is what is solved already at the
+    samples of the path, with others half way between.
     """
     places, angles = _Orientation(curve, k, link, known).samples()
     start = int(np.argmin(np.abs(places - curve.path.home)))
@@ -158,11 +157,10 @@ def _unwrapped(angles: Number, start: int, first: Number) -> Number:
 
 
 def recounted(solving_order: SolvingOrder, ways: tuple[Inputs, ...], pose: Inputs) -> tuple[Inputs, ...]:
-    """Return the motion and its approach path with drawn phases taken on.
+    """Return the inputs of a motion and of its path with drawn phases moved on by the turns that drivers have made.
 
-    They go on by the turns that drivers have made.
-
-    A drawing shows the angle of a driven link within half a turn; its driver may be any number of turns ahead.
+    A drawing shows the angle of a driven link within half a turn; its driver may be any number of turns ahead. `pose`
+    has the inputs at which the mechanism is drawn.
     """
     pose, *counted = (_slides_counted(solving_order, way) for way in (pose, *ways))
     drawn, rounds = _as_drawn(solving_order, pose)
@@ -174,7 +172,7 @@ def recounted(solving_order: SolvingOrder, ways: tuple[Inputs, ...], pose: Input
 
 
 def _slides_counted(solving_order: SolvingOrder, way: Inputs) -> Inputs:
-    """A way with driven blocks that count turns as they are drawn: phases of what gears with them are stated so."""
+    """Return a way with driven blocks that count turns as they are drawn, as phases of what meshes with them do."""
     drawn, ends = solving_order.structure.mechanism.drawn_poses, dict(way.ends)
     slides = [driven.pair for body in solving_order.structure.bodies for driven in body.driven]
     for pair in (
@@ -192,7 +190,7 @@ def _with_turns(slide: Drivable, ends: Ends, ahead: Number) -> Ends:
 
 
 def _blocks_counted(solving_order: SolvingOrder, way: Inputs, turns: Mapping[str, Number]) -> Inputs:
-    """A way with blocks that count turns as they are drawn: a slide tells their angle within half a turn only."""
+    """Return a way with blocks that count turns as drawn: a slide tells their angle within half a turn only."""
     drawn, ends = solving_order.structure.mechanism.drawn_poses, dict(way.ends)
     for mounted in (mounted for solver in solving_order.solvers for mounted in solver.slid):
         name, links, other = mounted.lower.name, mounted.lower.members, mounted.side.other
@@ -223,7 +221,7 @@ def _as_drawn(solving_order: SolvingOrder, pose: Inputs) -> tuple[Inputs, dict[s
 def _counted_on(
     solving_order: SolvingOrder, way: Inputs, rounds: Mapping[str, Number], turns: Mapping[str, Number]
 ) -> Inputs:
-    """A way with the phases of driven pairs taken on by their turns, those of others by the turns of their links."""
+    """Return a way with phases moved on: of driven pairs by their own turns, of others by the turns of their links."""
     geometry = solving_order.structure.mechanism.geometry
     ends = dict(way.ends)
     for name, pair in solving_order.pairs.items():
@@ -261,7 +259,7 @@ def _with_stated_turns(solving_order: SolvingOrder, drawn: Inputs, turns: Mappin
 
 
 def _turns_at(solving_order: SolvingOrder, drawn: Inputs) -> Iterator[tuple[str, Number]]:
-    """By how many turns each driven link is ahead of its drawn angle, relative to the base of its composite link."""
+    """Yield by how many turns each driven link is ahead of its drawn angle, relative to its composite link's base."""
     poses = solving_order.structure.mechanism.drawn_poses
     start = solving_order.start(drawn.ends, drawn.series(0), 0, (drawn.designs, 1))
     for body in solving_order.structure.bodies:
