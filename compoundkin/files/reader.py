@@ -189,7 +189,7 @@ def _tagged(kind: Kind, log: Recovery, raw: Any, where: str, angle: bool | None)
     return READERS[kind](log, raw, where, angle)
 
 
-# What is read table by table, each with its own problems, by what most files have none of.
+# Values that most files have none of: what reads them is imported with the first.
 TAGGED: dict[Kind, Tagged] = {
     kind: partial(_tagged, kind)
     for kind in ("law", "path", "segments", "profile", "program", "turned", "planar", "amount")

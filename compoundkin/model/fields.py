@@ -78,6 +78,8 @@ Named = TypeVar("Named")
 class LateKinds(MutableMapping[str, Named]):
     """Kinds by a name, each written as "file.Class" of a folder; its file is imported when it is first asked for.
 
+    Who goes through the values imports all of them; the names alone import nothing. A class may be set like any value.
+
     >>> kinds = LateKinds[type[Any]]("compoundkin.model.pairs", {"arcs": "arc.ArcSlot"})
     >>> kinds["arcs"].title
     'pin-in-arc pair'

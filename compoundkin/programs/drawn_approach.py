@@ -34,7 +34,7 @@ def driver_spacings(order: SolvingOrder) -> Mapping[str, float]:
 
 # Margins at samples of an approach above which those between them are above NEAR, too: their roots may halve there.
 CLEAR = 4.0 * NEAR
-# The designs whose approaches are known.
+# Of so many designs it is remembered how far they are clear.
 APPROACHES_KEPT = 64
 
 
