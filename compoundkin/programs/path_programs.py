@@ -254,6 +254,10 @@ class PathPrograms(ShortRepr):
                 arrays[k][...] = found
         return PathValues(numbers, dict(zip(self.names, arrays, strict=True)), failed, self.solve, shape, screened)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # results solve designs by it; its programs are made again where they are asked for
+        return PathPrograms, (self.reference, self.outputs, self.dimensions, self.chosen_backend)
+
     @cached_property
     def _wrapped(self) -> tuple[int, ...]:
         return tuple(k for k, output in enumerate(self.outputs) if output.is_wrapped)

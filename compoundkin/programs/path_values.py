@@ -107,5 +107,9 @@ class PathValues(Mapping[str, Any]):
         with np.errstate(all="ignore"):
             return self._solving(numbers_of_designs(self.numbers, np.array([design]))).motion
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # the numbers may not be read yet
+        return PathValues, (self.numbers, self.found, self.failed, self._solving, self.shape, self.screened)
+
     def __repr__(self) -> str:
         return f"PathValues({', '.join(self.found)} at {self.shape} poses)"

@@ -289,7 +289,7 @@ def random_mechanism(
         around = chosen.sample(known, outer) if len(known) >= outer else chosen.choices(known, k=outer)
         codes = [code for code, first, _ in pairs if first is None]
         to = [_entry(composer, chosen, code, on, multiple) for code, on in zip(codes, around, strict=True)]
-        composer.attach(kind, links, to if len(set(to)) == outer else around)
+        composer.attach(kind, links, to if len({entry.partition(ON)[0] for entry in to}) == outer else around)
         known += links
     composer.place(**{letter: (chosen.uniform(-3.0, 3.0), chosen.uniform(-3.0, 3.0)) for letter in composer.carriers})
     mechanism = composer.mechanism()

@@ -249,6 +249,32 @@ def test_a_path_is_copied_and_pickled(path):
     )
 
 
+def test_results_are_pickled_for_other_processes(path):
+    given = {"crank.D": COLUMN}
+    for found in (path(CRANK, given), path(CRANK, given, speed=2.0)):
+        other = pickle.loads(pickle.dumps(found))
+        for name, values in found.items():
+            np.testing.assert_array_equal(other[name], values)
+        np.testing.assert_array_equal(other.assembled, found.assembled)
+        solved = [each.motion(design=1).points["G"].position for each in (other, found)]
+        np.testing.assert_array_equal(*solved)
+    slopes = path.derivatives(CRANK)
+    other = pickle.loads(pickle.dumps(slopes))
+    np.testing.assert_array_equal(other["bar.angle", "plate.A.y"], slopes["bar.angle", "plate.A.y"])
+    cost = path.objective(_height)
+    sums = cost(CRANK)
+    other = pickle.loads(pickle.dumps(cost))
+    assert other(CRANK) == sums
+    assert (
+        repr(other)
+        == "PathObjective('Six-bar of Example 3-4': G.position, G.acceleration, bar.angle by crank.D, plate.A.y)"
+    )
+
+
+def _height(at):
+    return at["G.position"].imag
+
+
 def test_results_do_not_depend_on_threads(path):
     one, two = (path(CRANK, {"crank.D": COLUMN}, threads=threads)["G.acceleration"] for threads in (1, 2))
     np.testing.assert_array_equal(one, two)

@@ -81,6 +81,13 @@ def test_random_mechanisms_are_reproducible_and_assemble_as_drawn():
     assert np.max(np.abs(found - drawn)) < 1e-6
 
 
+@pytest.mark.parametrize(("groups", "seed"), [(2, 415), (3, 158), (3, 659)])
+def test_outer_pins_of_a_random_group_are_not_one_pin(groups, seed):
+    # one pin of both links, by two links that carry it, was refused beside the slide between them
+    motion = ck.solve(random_mechanism(groups, seed=seed))
+    assert not motion.failed.any()
+
+
 def test_a_large_one_falls_into_its_groups():
     mechanism = random_mechanism(400, seed=2, kinds=(*DYAD_NAMES, "triad"))
     found = groups(mechanism)

@@ -212,8 +212,12 @@ class PathObjective(ShortRepr):
             return values
         return replace(values, slopes=summed_slopes(self.path.dimensions, numbers, values.slopes, self.path.order))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return PathObjective, (self.path, self.function)
+
     def __repr__(self) -> str:
-        return f"PathObjective(of {self.path!r})"
+        of = f"{', '.join(self.path.names)} by {', '.join(self.path.free) or 'nothing'}"
+        return f"PathObjective({self.path.reference.mechanism.title!r}: {of})"
 
 
 class ComputedSum(NamedTuple):
