@@ -147,6 +147,6 @@ def generic_jacobian(pair: Pair, ends: Ends) -> Number:
     rows = np.array(pair.jacobian(ends, (FIXED,) * len(ends)), dtype=float)
     profiled = as_profile_contact(pair)
     if profiled:
-        rows[..., 2::3] /= profiled.extent
-        rows[..., pair.held :, :] *= profiled.extent / profiled.coordinate_scale
+        rows[..., 2::3] /= profiled.curve.size
+        rows[..., pair.held :, :] *= profiled.curve.size / profiled.coordinate_scale
     return rows

@@ -222,7 +222,7 @@ class Cam(ProfileContact, Guided, FrictionContact):
     def generic(self, rng: np.random.Generator) -> Ends:
         """Draw the profile in a random direction, the roller somewhere on it."""
         angle, s = rng.uniform(0.0, 2.0 * np.pi), rng.uniform(self.curve.low, self.curve.high)
-        u, z = complex(np.cos(angle), np.sin(angle)), complex(*rng.standard_normal(2)) * self.extent
+        u, z = complex(np.cos(angle), np.sin(angle)), complex(*rng.standard_normal(2)) * self.curve.size
         place = self.curve.at(s) + self.curve.normal(s) * self.outward * float(first_entry(self.radius))
         return End(z, u), End(z + u * place.c[0], None, float(first_entry(self.radius)))
 

@@ -212,9 +212,9 @@ class Face(ProfileContact, FrictionContact):
         """Draw the profile in a random direction, the face somewhere on it."""
         angle, turned = rng.uniform(0.0, 2.0 * np.pi, 2)
         u, along = complex(np.cos(angle), np.sin(angle)), complex(np.cos(turned), np.sin(turned))
-        z = complex(*rng.standard_normal(2)) * self.extent
+        z = complex(*rng.standard_normal(2)) * self.curve.size
         s = self.curve.support(np.conjugate(u) * along * (-1j * self.side))
-        return End(z, u), End(z + u * self.curve.at(s).c[0] + along * rng.standard_normal() * self.extent, along)
+        return End(z, u), End(z + u * self.curve.at(s).c[0] + along * rng.standard_normal() * self.curve.size, along)
 
     def parameter(self, ends: Ends, poses: Poses) -> Number:
         """Return the parameter of the profile at the contact."""
