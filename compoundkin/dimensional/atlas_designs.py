@@ -21,7 +21,7 @@ from compoundkin.base.errors import InvalidInput, Problem, StudyStopped
 from compoundkin.base.suffixes import suffix_for
 from compoundkin.dimensional.curve_chains import ChainPlan, CurveChain, curve_chain, curve_chains
 from compoundkin.dimensional.curve_likeness import HARMONICS, coefficients
-from compoundkin.files.atomic import remove_leftovers, write_atomically
+from compoundkin.files.atomic import begin_folder, remove_leftovers, write_once
 from compoundkin.files.saved_files import parquet
 from compoundkin.studies.samples.random_samples import SobolSample
 from compoundkin.studies.study import ends_a_run, run_pieces, workers
@@ -147,8 +147,10 @@ def parts_in_folder(plan: AtlasPlan, folder: str | os.PathLike[str], on: Any = N
     where = Path(folder)
     there = _plan_in(where)
     if there is None:
-        _begin(where, plan)
-    elif there != plan:
+        begin_folder(where / _DEFINITION, _definition(plan).encode())
+        # which another run may have begun meanwhile
+        there = _plan_in(where) or plan
+    if there != plan:
         what = f"it holds another atlas, of {there.links} links, {there.count} designs and seed {there.seed}"
         raise InvalidInput(Problem(str(folder), what, "name a new folder"))
     parts = _parts(where, plan)
@@ -161,7 +163,7 @@ def parts_in_folder(plan: AtlasPlan, folder: str | os.PathLike[str], on: Any = N
             columns[_DESCRIPTOR.name] = np.ravel(drawn.descriptors.view(f"V{drawn.descriptors.strides[0]}"))
             columns |= {one.name: drawn.extents[:, n] for n, one in enumerate(_EXTENTS)}
             content = part_content([*_numbers(chain), _DESCRIPTOR, *_EXTENTS], [columns], fingerprint)
-            _write(where / _file(k), content)
+            write_once(where / _file(k), content)
         remove_leftovers(where, is_complete=True)
     return parts
 
@@ -216,28 +218,6 @@ def _plan_in(folder: Path) -> AtlasPlan | None:
     if known != _FORMAT:
         raise InvalidInput(Problem(str(folder / _DEFINITION), f"its format {known} is not known", "name a new folder"))
     return plan
-
-
-def _begin(where: Path, plan: AtlasPlan) -> None:
-    """Make a folder, or take an empty one, and write what its atlas is. Raises InvalidInput where that cannot be."""
-    try:
-        where.mkdir(parents=True, exist_ok=True)
-        others = sorted(one.name for one in where.iterdir() if not one.name.startswith("."))
-    except (OSError, ValueError) as error:
-        what = f"it cannot be made: {getattr(error, 'strerror', None) or error}"
-        raise InvalidInput(Problem(str(where), what, "name another")) from None
-    if others and _plan_in(where) is None:  # else another run began it meanwhile
-        raise InvalidInput(Problem(str(where), f"it has other files, such as {others[0]}", "name a new folder"))
-    _write(where / _DEFINITION, _definition(plan).encode())
-
-
-def _write(path: Path, content: bytes) -> None:
-    """Write a file whole. Raises InvalidInput where that fails, unless another run has written it meanwhile."""
-    try:
-        write_atomically(path, lambda file: file.write(content))
-    except InvalidInput:
-        if not path.exists():
-            raise
 
 
 class _Piece(NamedTuple):

@@ -87,6 +87,43 @@ def new_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
         shutil.rmtree(beside, ignore_errors=True)
 
 
+def begin_folder(head: Path, content: bytes) -> None:
+    """Make a folder that several runs fill, or take an empty one, and write the file `head` that says what is in it.
+
+    A head that is there stays: another run began the folder. Raises InvalidInput where it cannot be made, or holds
+    other files.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as place:
+    ...     begin_folder(Path(place, "rows", "study.json"), b"first")
+    ...     begin_folder(Path(place, "rows", "study.json"), b"second")
+    ...     Path(place, "rows", "study.json").read_bytes()
+    b'first'
+    """
+    folder = head.parent
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        others = sorted(one.name for one in folder.iterdir() if not one.name.startswith("."))
+    except (OSError, ValueError) as error:
+        what = getattr(error, "strerror", None) or str(error)
+        raise InvalidInput(Problem(str(folder), f"it cannot be made: {what}", "name another")) from None
+    if os.path.exists(head):
+        return
+    if others:
+        raise InvalidInput(Problem(str(folder), f"it has other files, such as {others[0]}", "name a new folder"))
+    write_once(head, content)
+
+
+def write_once(path: Path, content: bytes) -> None:
+    """Write a file whole. Raises InvalidInput where that fails, unless another run has written it meanwhile."""
+    try:
+        write_atomically(path, lambda file: file.write(content))
+    except InvalidInput:
+        # it may have removed what was not yet in place at its end
+        if not os.path.exists(path):
+            raise
+
+
 def _beside(target: Path) -> Path:
     """Return the path of a temporary file or folder, which takes the place of `target` in the end."""
     return target.with_name(f".{target.name[:40]}.{os.urandom(6).hex()}.tmp")

@@ -131,7 +131,6 @@ class DrawnApproach(ShortRepr):
     def __init__(self, reference: Motion, shown: StatedModes) -> None:
         self.reference, self.shown = reference, shown
         self._drawn: dict[str, Number | None] = {}
-        self._homes: dict[str, float | None] = {}
 
     @cached_property
     def has_configuration(self) -> bool:
@@ -204,10 +203,8 @@ class DrawnApproach(ShortRepr):
 
     def _home(self, name: str) -> float | None:
         """Return the value at which a driver is drawn at the first pose."""
-        if name not in self._homes:
-            drawn = self.drawn(name)
-            self._homes[name] = None if drawn is None else float(np.ravel(drawn)[0])
-        return self._homes[name]
+        drawn = self.drawn(name)
+        return None if drawn is None else float(np.ravel(drawn)[0])
 
     def way(self, values: Mapping[str, Number]) -> ApproachWay | None:
         """Return the way of the only driver to a motion of its own, so far 0 where that has its drawn value.

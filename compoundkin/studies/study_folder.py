@@ -25,7 +25,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, LikelySlip, Problem, StudyStopped, warn
 from compoundkin.base.suffixes import suffix_for
-from compoundkin.files.atomic import atomic_file, remove_leftovers, write_atomically
+from compoundkin.files.atomic import atomic_file, begin_folder, remove_leftovers
 from compoundkin.files.saved_files import parquet
 from compoundkin.studies.samples import sample_from
 from compoundkin.studies.samples.variations import variation_from
@@ -116,7 +116,7 @@ def prepare_folder(path: str | os.PathLike[str], plan: StudyPlan) -> tuple[Study
     place = Path(os.path.abspath(path))
     own = FolderHead(plan.data, plan.columns, versions(plan.program), secrets.token_hex(8))
     if not os.path.exists(place / HEAD):
-        _begin(place, own)
+        begin_folder(place / HEAD, _content(own))
     there = read_head(place)
     _check_same_study(place, own, there)
     return StudyFolder(place, plan.fingerprint), there
@@ -138,28 +138,11 @@ def read_head(place: Path) -> FolderHead:
     return head
 
 
-def _begin(place: Path, head: FolderHead) -> None:
-    """Create a folder, or use an empty one."""
-    try:
-        place.mkdir(parents=True, exist_ok=True)
-        others = [one.name for one in place.iterdir() if not one.name.startswith(".")]
-    except (OSError, ValueError) as error:
-        what = getattr(error, "strerror", None) or str(error)
-        raise InvalidInput(Problem(str(place), f"it cannot be a folder of a study: {what}")) from None
-    if os.path.exists(place / HEAD):
-        # another run began it meanwhile
-        return
-    if others:
-        what = f"it has other files, such as {others[0]}"
-        raise InvalidInput(Problem(str(place), what, "name a new folder"))
+def _content(head: FolderHead) -> bytes:
+    """Return the file that says what is in a folder."""
     columns = [column._asdict() for column in head.columns]
     text = json.dumps({"format": FORMAT, **head._asdict(), "columns": columns}, indent=1)
-    try:
-        write_atomically(place / HEAD, lambda file: file.write(text.encode("utf-8", "surrogatepass")))
-    except InvalidInput:
-        # another run began it meanwhile, and swept what was not yet in place at its end
-        if not os.path.exists(place / HEAD):
-            raise
+    return text.encode("utf-8", "surrogatepass")
 
 
 def _check_same_study(place: Path, own: FolderHead, there: FolderHead) -> None:

@@ -1,6 +1,7 @@
 """Speed in one table, each subject beside others that ran in the same rounds: ``python -m tests.benchmarks``.
 
-It takes two minutes; ``--save`` writes the table into `docs/benchmarks.md`, as that of this version, with the machine.
+It takes half a minute; ``--save`` writes the table into `docs/benchmarks.md`, as that of this version, with the
+machine.
 Compared are the six-bar of Example 3-4 with C written by hand (eight poses at a time, and plainly), with NumPy written
 by hand and with the usual loop of SciPy's `fsolve`; the four-bar in it with other packages, as far as they are
 installed (`rivals`); and the start of commands with that of NumPy. Times are those of the processor, the least over

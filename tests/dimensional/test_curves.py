@@ -331,14 +331,14 @@ def test_an_atlas_that_was_killed_goes_on(tmp_path: Path) -> None:
     place = tmp_path / "atlas"
     script = (
         "import os, signal\n"
-        "from compoundkin.dimensional import atlas_designs as a\n"
+        "from compoundkin.dimensional import atlas_designs\nfrom compoundkin.files import atomic as a\n"
         "write, left = a.write_atomically, [2]\n"
         "def killed(path, fill):\n"
         "    left[0] -= path.suffix == '.parquet'\n"
         "    kill = lambda file: (file.write(b'PAR'), os.kill(os.getpid(), signal.SIGKILL))\n"
         "    write(path, fill if left[0] else kill)\n"
         "a.write_atomically = killed\n"
-        f"a.parts_in_folder(a.AtlasPlan(4, 600, 2), {str(place)!r})\n"
+        f"atlas_designs.parts_in_folder(atlas_designs.AtlasPlan(4, 600, 2), {str(place)!r})\n"
     )
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == -signal.SIGKILL
     left, *names = sorted(one.name for one in place.iterdir())

@@ -267,7 +267,7 @@ def test_heads_that_are_damaged_or_new_are_told(tmp_path: Path) -> None:
         head.write_text(text.replace(old, new, 1), "utf-8")
         with pytest.raises(InvalidInput, match=told):
             StudyResult.open(tmp_path)
-    with pytest.raises(InvalidInput, match="it cannot be a folder of a study: File name too long"):
+    with pytest.raises(InvalidInput, match="it cannot be made: File name too long"):
         rocker(2).run(tmp_path / ("a" * 300))
 
 

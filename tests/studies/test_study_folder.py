@@ -130,7 +130,7 @@ def test_folders_of_others_are_refused_before_anything_is_written(tmp_path: Path
         ("a", (8, 3.0), "rows of another study, which differs in sample.count"),
         ("a", (4, 9.0), "differs in speed"),
         ("b", (4, 3.0), "thesis.txt"),
-        ("c", (4, 3.0), "cannot be a folder"),
+        ("c", (4, 3.0), "it cannot be made: File exists"),
     ):
         with pytest.raises(ck.errors.InvalidInput, match=told):
             six_bar(count, speed).run(tmp_path / folder)
