@@ -18,8 +18,10 @@ from compoundkin.kinematics.groups.group_equations import STRAY
 from compoundkin.kinematics.motion import Motion
 from compoundkin.programs.backends import chosen_back_end
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, numbers_of_designs
-from compoundkin.programs.drawn_approach import DrawnApproach, DriverRoute
+from compoundkin.programs.drawn_approach import ClearApproaches, DrawnApproach, DriverRoute
+from compoundkin.programs.follower_contacts import FollowerContacts
 from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, HOLDS, STEP, InputNumber, start_of
+from compoundkin.programs.limit_screening import only_design, resting_numbers, vary_along_motion
 from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_march import side_of
@@ -44,12 +46,17 @@ class CallSeeds:
     approach: DrawnApproach
     backend: str | None
     _known_starts: dict[Any, MarchStart] = field(default_factory=dict)
+    _contacts: dict[int, FollowerContacts | None] = field(default_factory=dict)
+    _clear: ClearApproaches = field(default_factory=ClearApproaches)
     _continuations: dict[Any, DesignContinuation] = field(default_factory=dict)
 
     def added(self, path: RecordedPath, numbers: CallNumbers) -> CallNumbers:
         """Return the numbers of a call with the seeds that its program needs."""
         if not path.seeds:
             return numbers
+        contacts = self._contacts_of(path)
+        if contacts is not None:
+            return self._with_contacts(contacts, numbers)
         designs, poses = numbers.extent
         is_quick = designs >= FEW_DESIGNS or chosen_back_end(self.backend) != "numpy"
         if not (path.can_march and is_quick):
@@ -64,6 +71,45 @@ class CallSeeds:
         for name, value in numbers.driver_values.items():
             given[InputNumber(DRIVE, name, STEP)] = np.diff(value, axis=1, append=value[:, -1:])
         return replace(numbers, given=given)
+
+    def _contacts_of(self, path: RecordedPath) -> FollowerContacts | None:
+        """Return the followers of a path, if that asks for nothing else."""
+        if id(path) not in self._contacts:
+            self._contacts[id(path)] = FollowerContacts.of(path, self.backend)
+        return self._contacts[id(path)]
+
+    def _with_contacts(self, contacts: FollowerContacts, numbers: CallNumbers) -> CallNumbers:
+        """Return the numbers of a call with the contacts of followers; designs where they are not sure are solved."""
+        found, sure = contacts.added(numbers)
+        sure, path = sure & self._is_approached(contacts, numbers), contacts.path
+        given = {**found.given, HOLDS: sure[:, None].astype(float)}
+        if not sure.all():
+            left = np.flatnonzero(~sure)
+            signs = path.mechanism.recording.signs
+            solved = _solved_seeds(path.seeds, numbers_of_designs(numbers, left), self.by, signs)
+            for one, value in solved.items():
+                given[one][left] = value
+        return replace(found, given=given)
+
+    def _is_approached(self, contacts: FollowerContacts, numbers: CallNumbers) -> Number:
+        """Tell which designs are surely clear of limits on the approach to a motion: groups keep their signs there."""
+        values = numbers.driver_values
+        if not contacts.watches or self.approach.is_passed(values):
+            return np.True_
+        way, design = self.approach.way(values), only_design(numbers)
+        if way is not None and self._clear.has(design, way):
+            return np.True_
+        approach = self.approach.values(values) if way is None else way.values
+        if approach is None or vary_along_motion(numbers):
+            return np.bool_(approach is None)
+
+        def margins(drives: Mapping[str, Number]) -> Number:
+            return contacts.margins(resting_numbers(numbers, drives))
+
+        is_clear = np.all(margins(approach) >= NEAR, axis=1)
+        if way is not None and is_clear.all():
+            self._clear.explore(design, way, numbers.extent[1] == 1, margins)
+        return is_clear
 
     def _starts(self, path: RecordedPath, numbers: CallNumbers) -> dict[InputNumber, Number]:
         """Return the seeds at first poses: continued from how the path is drawn, or solved for designs too far away."""

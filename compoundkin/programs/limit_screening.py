@@ -126,11 +126,11 @@ class LimitScreening(ShortRepr):
 
     def _is_approached(self, values: Mapping[str, Number], numbers: CallNumbers) -> bool:
         """Tell whether designs are surely clear of limits on the approach to a motion."""
-        way, design = self.approach.way(values), _one_design(numbers)
+        way, design = self.approach.way(values), only_design(numbers)
         if way is not None and self._clear.has(design, way):
             return True
         approach = self.approach.values(values) if way is None else way.values
-        if approach is None or _vary_along_motion(numbers):
+        if approach is None or vary_along_motion(numbers):
             return approach is None
         is_clear = bool(np.all(self._margins_on(numbers, approach) >= NEAR))
         if way is not None:
@@ -143,7 +143,7 @@ class LimitScreening(ShortRepr):
 
     def _margins_on(self, numbers: CallNumbers, approach: Mapping[str, Number]) -> Number:
         """Return the least margins of groups on an approach, (1 or designs, values)."""
-        resting = _resting(numbers, approach)
+        resting = resting_numbers(numbers, approach)
         return self._program(self._poses, resting).run(resting)[MARGIN]
 
     def _safe_margin(self, values: Mapping[str, Number], steps: Mapping[str, Number] = MappingProxyType({})) -> float:
@@ -176,7 +176,7 @@ class LimitScreening(ShortRepr):
             return np.zeros_like(near), near
         near = ~(least.min(axis=1) >= self._safe_margin(numbers.driver_values))
         approach = self.approach.values(numbers.driver_values) if self._squares else None
-        if _vary_along_motion(numbers):
+        if vary_along_motion(numbers):
             # such designs are solved at once
             return np.zeros_like(near), near | (approach is not None)
         if approach is None:
@@ -185,7 +185,7 @@ class LimitScreening(ShortRepr):
         early = np.array(np.broadcast_to(comes_near, numbers.extent[:1]))
         if early.any():
             # the way is looked at as a motion is
-            screened = self.screen_all(_resting(numbers_of_designs(numbers, np.flatnonzero(early)), approach))
+            screened = self.screen_all(resting_numbers(numbers_of_designs(numbers, np.flatnonzero(early)), approach))
             early[early] = screened.failed.any(axis=1) | np.isin(screened.designs, screened.to_solve)
         return near, early
 
@@ -301,7 +301,7 @@ def _with_driver_values(
 REST = np.zeros((1, 1))
 
 
-def _resting(numbers: CallNumbers, values: Mapping[str, Number]) -> CallNumbers:
+def resting_numbers(numbers: CallNumbers, values: Mapping[str, Number]) -> CallNumbers:
     """Return the same dimensions with drivers that rest at other values."""
     return _with_driver_values(numbers, values, dict.fromkeys(values, REST))
 
@@ -328,12 +328,12 @@ def may_touch_zero(y0: Number, slope0: Number, y1: Number, slope1: Number) -> Nu
     return touches
 
 
-def _one_design(numbers: CallNumbers) -> tuple[float, ...] | None:
+def only_design(numbers: CallNumbers) -> tuple[float, ...] | None:
     """Return the dimensions of the only design; None where there are several."""
     found = [value for one, value in numbers.given.items() if one.kind == DIMENSION]
     return tuple(value.item() for value in found) if all(value.size == 1 for value in found) else None
 
 
-def _vary_along_motion(numbers: CallNumbers) -> bool:
+def vary_along_motion(numbers: CallNumbers) -> bool:
     """Tell whether some dimension varies along the motion."""
     return any(value.shape[1] > 1 for one, value in numbers.given.items() if one.kind == DIMENSION)

@@ -22,7 +22,7 @@ from compoundkin.programs.call_numbers import (
     check_threads,
     output_arrays,
 )
-from compoundkin.programs.call_plans import CallPlans
+from compoundkin.programs.call_plans import CallPlans, ReadCall
 from compoundkin.programs.call_seeds import CallSeeds
 from compoundkin.programs.derivatives.law_slopes import with_law_slopes
 from compoundkin.programs.dimensions import (
@@ -172,7 +172,7 @@ class PathPrograms(ShortRepr):
                 # a full reading reports values that are not finite
                 return self.checked_values(self.numbers(call), arrays, least)
         check_threads(threads)
-        numbers = self.numbers(call)
+        numbers = self.numbers(call) if read is None else self._seeded_numbers(call, read)
         given = {} if out is None else self._arrays_of(out, self._are_vectors(self.program(numbers)), numbers.shape)
         return self.computed(numbers, threads, given)
 
@@ -189,10 +189,14 @@ class PathPrograms(ShortRepr):
     def numbers(self, call: Call, with_slopes: bool = False) -> CallNumbers:
         """Return the numbers of a call, perhaps with the slopes of laws; raises InvalidInput for what does not fit."""
         read = self.plans.read(call)
-        if read is not None and read.is_finite():
-            numbers = read.numbers()
-            return self.seeds.added(self.variant(numbers.still), numbers)
-        return self._read_in_full(call, with_slopes)
+        return self._read_in_full(call, with_slopes) if read is None else self._seeded_numbers(call, read, with_slopes)
+
+    def _seeded_numbers(self, call: Call, read: ReadCall, with_slopes: bool = False) -> CallNumbers:
+        """Return the numbers of a call that was read by its plan; a full reading reports what is not finite."""
+        if not read.is_finite():
+            return self._read_in_full(call, with_slopes)
+        numbers = read.numbers()
+        return self.seeds.added(self.variant(numbers.still), numbers)
 
     def _read_in_full(self, call: Call, with_slopes: bool) -> CallNumbers:
         values = dimension_values(self.stated, self.dimensions, call.dimensions)

@@ -24,6 +24,7 @@ from compoundkin.model.pairs.profile_contact import (
     Approach,
     Freedom,
     ProfileContact,
+    ProfileSamples,
     path_crossings,
     relative_path,
 )
@@ -189,7 +190,7 @@ class Cam(ProfileContact, Guided, FrictionContact):
         On a slide it is farthest along the guide in mode +1; on a pin most clockwise, as with a bar for the profile.
         """
         path, away, sign = self.approach(ends, poses, own, freedom)
-        least, greatest = path_crossings(path, self._samples, away, self.turns)
+        least, greatest = path_crossings(path, self.samples[1:], away, self.turns)
         return np.where(sign > 0, least, greatest), np.where(sign > 0, greatest, least)
 
     def approach(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> Approach:
@@ -206,12 +207,12 @@ class Cam(ProfileContact, Guided, FrictionContact):
         return f"on its way {self.at} does not meet the profile of {self.on}{between}"
 
     @cached_property
-    def _samples(self) -> tuple[Number, Number]:
+    def samples(self) -> ProfileSamples:
         """Points of the profile and its normals there."""
         s = self.curve.samples.s[::THINNED]
         s = s if self.curve.closed else np.append(s, self.curve.high)
         place, first = self.curve.derivatives(s, 1)
-        return place, -1j * first / np.abs(first)
+        return ProfileSamples(s, place, -1j * first / np.abs(first))
 
     def osculation(self, ends: Ends, poses: Poses) -> Osculation:
         """Return the profile's centre of curvature, and the middle of the roller."""

@@ -34,6 +34,7 @@ from compoundkin.model.pairs.profile_contact import (
     Approach,
     Freedom,
     ProfileContact,
+    ProfileSamples,
     face_tangencies,
     relative_path,
 )
@@ -177,7 +178,7 @@ class Face(ProfileContact, FrictionContact):
             rise = dot(facing, path.centre)
             found = path.sense * dot(facing, reach) / np.where(np.abs(rise) < ALONG, np.nan, rise)
             return found, found
-        right, left = face_tangencies(path, self._samples, facing, self.turns)
+        right, left = face_tangencies(path, self.samples[1:], facing, self.turns)
         against, along = (right, left) if self.side > 0 else (left, right)
         return path.sense * against, path.sense * along
 
@@ -192,14 +193,14 @@ class Face(ProfileContact, FrictionContact):
         return f"the face of {self.link} does not meet the profile of {self.on}, or lies along its own guide"
 
     @cached_property
-    def _samples(self) -> tuple[Number, Number]:
+    def samples(self) -> ProfileSamples:
         """Points of the profile and its outward normals, those that a face can touch."""
         s = self.curve.samples.s[::THINNED]
         place, first = self.curve.derivatives(s, 1)
         normal = -1j * self.curve.outer_side * first / np.abs(first)
         touched = self.curve.at(self.curve.support(normal)).c[0]
         on_hull = np.abs(touched - place) < NEAR * self.curve.size
-        return place[on_hull], normal[on_hull]
+        return ProfileSamples(s[on_hull], place[on_hull], normal[on_hull])
 
     def osculation(self, ends: Ends, poses: Poses) -> Osculation:
         """Return the profile's centre of curvature; the face is straight."""

@@ -108,6 +108,11 @@ class ProfileContact(Contact):
             return curve.spans(self._above_face)
         return curve.spans(self._beside_roller) if self.roller else ()
 
+    @property
+    @abstractmethod
+    def samples(self) -> ProfileSamples:
+        """The samples between which its contacts are searched."""
+
     @abstractmethod
     def approach(self, ends: Ends, poses: Poses, own: int, freedom: Freedom) -> Approach:
         """Return how a member of one freedom comes to the profile; `poses` are those where its coordinate is zero."""
@@ -160,6 +165,14 @@ class ProfileContact(Contact):
 def as_profile_contact(pair: Pair) -> ProfileContact | None:
     """Return a pair as a profile contact, or None."""
     return pair if isinstance(pair, ProfileContact) else None
+
+
+class ProfileSamples(NamedTuple):
+    """Parameters of a profile, its points and its unit normals there."""
+
+    s: Number
+    places: Number
+    normals: Number
 
 
 class Freedom(NamedTuple):

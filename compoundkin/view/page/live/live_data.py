@@ -8,8 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
-from math import comb
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,6 +31,7 @@ from compoundkin.model.attributes import (
 )
 from compoundkin.model.pairs.profile_contact import THINNED
 from compoundkin.programs.dimensions import FreeDimension
+from compoundkin.programs.follower_contacts import DEGREE, CurvePolynomials
 from compoundkin.programs.graph.operation_graph import PARAMETER, SEED, InputNumber, group_seed
 from compoundkin.programs.page_program import PageProgram, RecordedReason, SearchedContact
 from compoundkin.programs.recording.recorded_motion import ProgramOutput, output_of
@@ -273,12 +272,9 @@ class LiveData:
             yield {"name": output.name, "parts": parts, "wrapped": output.is_wrapped, "own": own}
 
 
-# A profile is given by polynomials of this degree, each about the middle of its stretch, which reproduce the Taylor
-# coefficients 0 .. 3 to such parts of the size (by the parameter as an angle).
-DEGREE = 12
+# The polynomials of a profile reproduce its Taylor coefficients 0 .. 3 to such parts of the size (by the parameter as
+# an angle).
 REPRODUCED = np.array([4e-14, 4e-13, 4e-11, 4e-9])
-# Where in a stretch that is tried; no stretch is shorter than this part of the whole.
-TRIED, SHORTEST = np.array([-1.0 + 1e-9, -0.75, -0.25, 0.25, 0.75, 1.0 - 1e-9]), 1e-5
 
 
 def profile_data(curve: Curve) -> dict[str, Any]:
@@ -289,40 +285,17 @@ def profile_data(curve: Curve) -> dict[str, Any]:
     >>> profile_data(Analytic(Series.turn, 0.0, 2.0 * np.pi, closed=True))["closed"]
     True
     """
-    inner = sorted(at for at in curve.breaks if curve.low < at < curve.high)
-    edges = [curve.low, *inner, curve.high]
-    left, pieces = [*pairwise(edges)][::-1], list[tuple[float, Number]]()
-    unit = ((curve.high - curve.low) / (2.0 * np.pi)) ** np.arange(len(REPRODUCED)) / curve.size
-    while left:
-        low, high = left.pop()
-        middle = 0.5 * (low + high)
-        known = np.array(curve.expansion(middle, DEGREE))
-        s = middle + 0.5 * (high - low) * TRIED
-        orders = range(len(REPRODUCED))
-        found = np.array([_coefficient(known, k, s - middle) for k in orders])
-        off = np.max(np.abs(np.array(curve.expansion(s, len(orders) - 1)) - found), axis=1) * unit
-        if np.all(off <= REPRODUCED) or high - low < SHORTEST * (curve.high - curve.low):
-            pieces.append((low, known))
-        else:
-            left += [(middle, high), (low, middle)]
-    known = np.array([coefficients for _, coefficients in pieces]).ravel()
+    edges, coefficients, _ = CurvePolynomials.of(curve, REPRODUCED)
+    known = coefficients.T.ravel()
     return {
         "low": curve.low,
         "high": curve.high,
         "closed": curve.closed,
         "degree": DEGREE,
-        "edges": packed_doubles(np.array([*(low for low, _ in pieces), curve.high])),
+        "edges": packed_doubles(edges),
         "x": packed_doubles(known.real),
         "y": packed_doubles(known.imag),
     }
-
-
-def _coefficient(known: Number, k: int, away: Number) -> Number:
-    """Return the Taylor coefficient of an order at places away from where a polynomial is known."""
-    found: Number = np.zeros_like(away, dtype=complex)
-    for n in range(DEGREE, k - 1, -1):
-        found = found * away + comb(n, k) * known[n]
-    return found
 
 
 @dataclass(frozen=True, eq=False)
