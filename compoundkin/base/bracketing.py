@@ -31,6 +31,52 @@ def bisect_brackets(
     return inside, outside
 
 
+def sign_changes(
+    f: Callable[[Number], Number], low: Number, high: Number, at_low: Number, at_high: Number, trials: int
+) -> tuple[Number, Number]:
+    """Narrow brackets in which functions change their sign until their ends are neighbouring numbers.
+
+    `at_low` and `at_high`, of opposite signs, are the values there; zero counts as positive. A jump is found as a zero
+    is, by bisection. Source: T. R. Chandrupatla, A new hybrid quadratic/bisection algorithm for finding the zero of a
+    nonlinear function without using derivatives, Advances in Engineering Software 28 (1997) 145-149.
+
+    >>> low, high = sign_changes(lambda x: x**3 - 2.0, np.array([0.0]), np.array([2.0]), np.full(1, -2.0),
+    ...                          np.full(1, 6.0), 60)
+    >>> low.round(9), bool(np.all(np.nextafter(low, high) == high))
+    (array([1.25992105]), True)
+    """
+    rising = at_high >= 0.0
+    # a is the newest end, b the one across the change, c the end that a or b was before
+    a, b, fa, fb = high, low, at_high, at_low
+    part: Number = np.full(np.shape(a), 0.5)
+    for _ in range(trials):
+        place = a + part * (b - a)
+        # nothing is between neighbours
+        inner = (place - a) * (place - b) < 0.0
+        if not inner.any():
+            break
+        value = np.where(inner, f(place), fa)
+        place = np.where(inner, place, a)
+        same = (value >= 0.0) == (fa >= 0.0)
+        c, fc = np.where(same, a, b), np.where(same, fa, fb)
+        b, fb = np.where(same, b, a), np.where(same, fb, fa)
+        a, fa = place, value
+        part = _chandrupatla_part((a, b, c), (fa, fb, fc))
+    upper = (fa >= 0.0) == rising
+    return np.where(upper, b, a), np.where(upper, a, b)
+
+
+def _chandrupatla_part(places: tuple[Number, Number, Number], values: tuple[Number, Number, Number]) -> Number:
+    """Return where between a and b to look next: inverse quadratic interpolation where it can be trusted, or half."""
+    (a, b, c), (fa, fb, fc) = places, values
+    with np.errstate(all="ignore"):
+        xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
+        trusted = (phi * phi < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
+        inverse = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+        least = 2.0 * np.spacing(np.abs(a)) / np.abs(b - a)
+    return np.where(trusted & (least < 0.5), np.clip(inverse, least, 1.0 - least), 0.5)
+
+
 def false_position(
     f: Callable[[Number], Number], high: Number, at_low: Number, at_high: Number, flat: float, trials: int
 ) -> Number:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.bracketing import bisect_brackets, golden_section_minimum
+from compoundkin.base.bracketing import golden_section_minimum, sign_changes
 from compoundkin.configurations.segment_poses import Sweep
 from compoundkin.configurations.segments import AWAY, CHANGE, END, LIMIT, NONE, TOUCHING, Segments
 from compoundkin.kinematics.block import BLOCK, Block
@@ -22,7 +22,8 @@ from compoundkin.kinematics.block import BLOCK, Block
 CELLS = 72
 # A margin whose neighbours exceed it by less than this part of itself does not come near zero between them.
 SHALLOW = 0.25
-HALVINGS = 52
+# Tries for a zero: a dozen narrow its bracket to neighbouring numbers, three times those of bisection always do.
+TRIALS = 160
 # Distances from a double zero at which the margin is evaluated: with enough digits, and at last without curvature.
 BESIDE = (1e-3, 1e-5, 1e-5)
 STEPS = 60
@@ -150,9 +151,9 @@ def _zeros(margins: Margins, rows: Number, low: Number, high: Number) -> Number:
     """Return the zero of the margin in every bracket, on the assembled side."""
     if not len(rows):
         return np.zeros(0)
-    rising = margins(rows, high) >= 0
-    low, high = bisect_brackets(lambda middle: (margins(rows, middle) >= 0) != rising, low, high, HALVINGS)
-    return np.where(rising, high, low)
+    at_low, at_high = margins(rows, low), margins(rows, high)
+    low, high = sign_changes(lambda place: margins(rows, place), low, high, at_low, at_high, TRIALS)
+    return np.where(at_high >= 0.0, high, low)
 
 
 def cuts_between(margins: Margins, events: list[list[Event]], modes: tuple[int, ...]) -> Iterator[Cut]:
