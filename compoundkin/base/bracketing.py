@@ -55,7 +55,7 @@ def sign_changes(
         inner = (place - a) * (place - b) < 0.0
         if not inner.any():
             break
-        value = np.where(inner, f(place), fa)
+        value: Number = np.where(inner, f(place), fa)
         place = np.where(inner, place, a)
         same = (value >= 0.0) == (fa >= 0.0)
         c, fc = np.where(same, a, b), np.where(same, fa, fb)
