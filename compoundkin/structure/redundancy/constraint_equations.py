@@ -127,10 +127,12 @@ class ConstraintEquations:
         parts = [(p.z.c[0].real / self.size, p.z.c[0].imag / self.size, p.angle.c[0]) for p in placed]
         return np.array(parts, dtype=float).ravel()
 
-    def poses(self, state: Array) -> dict[str, Pose]:
-        """Return the poses of all links in a state."""
+    def poses(self, state: Array, of: Iterable[Pair] | None = None) -> dict[str, Pose]:
+        """Return the poses of all links in a state, or of those that some pairs join."""
         found = {FRAME: FIXED}
-        for name, k in self.column.items():
+        wanted = self.column if of is None else {name for pair in of for name in pair.members if name != FRAME}
+        for name in wanted:
+            k = self.column[name]
             angle = constant(float(state[k + 2]))
             found[name] = Pose(constant(complex(state[k], state[k + 1]) * self.size), angle.turn(), angle)
         return found
@@ -141,18 +143,17 @@ class ConstraintEquations:
 
     def closures(self, state: Array) -> Array:
         """Return by how much every held coordinate is open, lengths in the user's unit."""
-        poses = self.poses(state)
-        return np.array(
-            [
-                float(np.real(c.c[0]))
-                for pair in self.pairs
-                for c in pair.closure(self.ends[pair.name], _of(pair, poses))
-            ]
-        )
+        links, _ = self._sides
+        origins = np.append(state.reshape(-1, LINK_FREEDOMS)[:, :2] * self.size, [[0.0, 0.0]], axis=0)
+        places = origins.T[:, links] + self._arms(state)
+        others = self.mechanism.written_pairs
+        poses = self.poses(state, others)
+        rest = [float(np.real(c.c[0])) for p in others for c in p.closure(self.ends[p.name], _of(p, poses))]
+        return np.append((places[:, 1] - places[:, 0]).T, rest)
 
     def coordinates(self, state: Array) -> Array:
         """Return the drivers' coordinates, as the drivers count them."""
-        poses = self.poses(state)
+        poses = self.poses(state, self.driven)
         found = []
         for drive, pair in zip(self.mechanism.drives, self.driven, strict=True):
             value = pair.coordinate(self.ends[pair.name], _of(pair, poses)).c[0]
@@ -168,13 +169,15 @@ class ConstraintEquations:
 
     def jacobian(self, state: Array) -> tuple[Array, Array]:
         """Return the rows of all pairs by the state, each of the length 1. Return also by what each was divided."""
-        poses = self.poses(state)
-        tables = ((pair, pair.jacobian(self.ends[pair.name], _of(pair, poses))) for pair in self.pairs)
-        return self._scaled(self._filled((pair, table[..., : pair.held, :]) for pair, table in tables), self.size)
+        others = self.mechanism.written_pairs
+        poses = self.poses(state, others)
+        tables = ((pair, pair.jacobian(self.ends[pair.name], _of(pair, poses))) for pair in others)
+        rest = self._filled((pair, table[..., : pair.held, :]) for pair, table in tables)
+        return self._scaled(np.concatenate([self._pin_rows(state), rest]), self.size)
 
     def driving(self, state: Array) -> Array:
         """Return the rows of the drivers' coordinates, each of the length 1. They are by the state."""
-        poses = self.poses(state)
+        poses = self.poses(state, self.driven)
         tables = ((pair, pair.jacobian(self.ends[pair.name], _of(pair, poses))) for pair in self.driven)
         coordinate = ((pair, table[..., pair.held : pair.held + 1, :]) for pair, table in tables)
         return self._scaled(self._filled(coordinate), self.size)[0]
@@ -191,6 +194,36 @@ class ConstraintEquations:
             ends = places.setdefault(at, pair.generic(rng))
             tables.append((pair, generic_jacobian(pair, ends)[..., : pair.held, :]))
         return self._scaled(self._filled(tables), 1.0)[0]
+
+    @cached_property
+    def _sides(self) -> tuple[Number, Number]:
+        """The two links of every pin (2, pins), the frame after the moving ones, and its place on each of them."""
+        number = {name: k for k, name in enumerate((*self.links, FRAME))}
+        links = [[number[name] for name in pin.members] for pin in self.pins]
+        points = [[end.point for end in self.ends[pin.name]] for pin in self.pins]
+        return np.array(links, dtype=int).reshape(-1, 2).T, np.array(points, dtype=complex).reshape(-1, 2).T
+
+    def _arms(self, state: Array) -> Array:
+        """Return from the origins of its two links to every pin, in the world: x and y (2, 2, pins).
+
+        All pins are computed at once, in real numbers: they are rounded as those of a single pair.
+        """
+        links, points = self._sides
+        angles = np.append(state[2::LINK_FREEDOMS], 0.0)[links]
+        cos, sin, x, y = np.cos(angles), np.sin(angles), points.real, points.imag
+        return np.stack([cos * x - sin * y, cos * y + sin * x])
+
+    def _pin_rows(self, state: Array) -> Array:
+        """Return the rows of all pins, the gaps in x and in y of each."""
+        links, _ = self._sides
+        x, y = self._arms(state)
+        rows = np.zeros((len(self.pins), 2, len(self.links) + 1, LINK_FREEDOMS))
+        k = np.arange(len(self.pins))
+        for side, sign in enumerate((-1.0, 1.0)):
+            on = links[side]
+            rows[k, 0, on, 0] = rows[k, 1, on, 1] = sign
+            rows[k, 0, on, 2], rows[k, 1, on, 2] = -sign * y[side], sign * x[side]
+        return rows.reshape(2 * len(k), self.width + LINK_FREEDOMS)[:, : self.width]
 
     def _filled(self, tables: Iterable[tuple[Pair, Any]]) -> Array:
         blocks = [(pair, np.asarray(one, float).reshape(-1, LINK_FREEDOMS * len(pair.members))) for pair, one in tables]
