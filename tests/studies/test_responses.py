@@ -98,6 +98,45 @@ def test_figures_do_not_move_with_the_grid(beside: float) -> None:
         assert np.abs(place - end.at.place).max() < 1e-8
 
 
+MANY_DESIGNS = 512
+
+
+@pytest.mark.parametrize(
+    ("name", "step"),
+    [
+        ("G.x.stroke", 5.0), ("bar.angle.time_ratio", 5.0), ("plate.transmission_angle.least", 10.0),
+        ("plate.transmission_angle.greatest", 30.0), ("G.velocity.length.least", 30.0),
+        ("G.acceleration.length.greatest", 5.0), ("crank.angle.greatest", 30.0),
+    ],
+)  # fmt: skip
+def test_many_designs_have_the_extremes_of_few(name: str, step: float) -> None:
+    """Compiled programs find what the search of a few designs finds, which knows nothing of them."""
+    ranges = {**RANGES, "crank.D.x": variation_of("crank.D.x", (13.0, 24.0))}  # some do not assemble
+    path, (response,) = studied_path(
+        ck.load("six-bar"), list(ranges), [name], ck.deg(np.arange(0, 361, step)), speed=2.0
+    )
+    sample = sample_of("sobol", MANY_DESIGNS, 1)
+
+    def found(rows: range) -> tuple[Number, Number]:
+        designs = path.designs(sample.designs(ranges, rows))
+        with suppress_pose_warnings():
+            return response.values(designs), response.slopes(designs)
+
+    parts = [found(range(k, k + 128)) for k in range(0, MANY_DESIGNS, 128)]
+    for whole, part in zip(found(range(MANY_DESIGNS)), zip(*parts, strict=True), strict=True):
+        expected = np.concatenate(part, axis=-1)
+        known = ~np.isnan(expected)
+        assert (np.isnan(whole) == ~known).all()
+        assert np.abs(whole - expected)[known].max() < 1e-9 * max(1.0, np.abs(expected[known]).max())
+
+
+def test_strokes_of_many_designs_are_those_of_the_closed_form() -> None:
+    path, (response,) = studied_path(ck.load("slider-crank-offset"), ["crank.A.x"], ["B.x.stroke"], COARSE)
+    radii = np.linspace(30.0, 60.0, MANY_DESIGNS)
+    closed = np.subtract(*(np.sqrt((120.0 + sign * radii) ** 2 - 400.0) for sign in (1.0, -1.0)))
+    assert np.allclose(response.values(path.designs({"crank.A.x": radii})), closed, rtol=1e-14, atol=0.0)
+
+
 def test_angles_of_more_than_a_turn_are_continuous_between_the_poses() -> None:
     """The other crank of a drag link swings about the driven one: it turns as far, and is greatest between poses."""
     drag = ck.Mechanism(

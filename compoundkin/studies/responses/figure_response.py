@@ -5,176 +5,23 @@ Forces, and figures of groups without a closed form, need `solve`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 
 from compoundkin.base.arrays import Number
-from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, InvalidMechanism, NotAssembled, NotDetermined, Problem
-from compoundkin.base.extremes import MOST_ADDED, POLE, ROUNDING, ZERO, Offers, SoughtPeaks, Windows, best_of, peaks
+from compoundkin.base.extremes import ZERO
 from compoundkin.kinematics.extremes import extremes
 from compoundkin.kinematics.extremes.dead_points import moving_driver
 from compoundkin.kinematics.extremes.stretches import SAME_PLACE
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import GREATEST, LEAST, RADIANS, STROKE, TIME_RATIO
 from compoundkin.studies.responses.assembled_range import assembled_range
-from compoundkin.studies.responses.designs import Designs, design_blocks, refined_samples, refinement_parts
+from compoundkin.studies.responses.course_search import CourseExtreme, CourseSearch
+from compoundkin.studies.responses.designs import Designs, design_blocks
 from compoundkin.studies.responses.response import Response
-
-# A window is narrowed so often at most: at a kink to 1e-10 of it.
-NARROWINGS = 20
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class CourseExtreme(ShortRepr):
-    """The greatest value of a course of each design, and its place.
-
-    With the sign -1 it is the least. Both are (designs,), NaN where a design is not assembled over the whole motion.
-    """
-
-    value: Number
-    place: Number
-
-
-class SampledCourse(NamedTuple):
-    """A course of each design, `parts` samples from pose to pose; `greatest` and `least` are their numbers."""
-
-    parts: int
-    values: Number
-    greatest: Number
-    least: Number
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class CourseSearch(ShortRepr):
-    """A search for the greatest values of a course times a `sign`, between the poses too.
-
-    The length of a vector is `squared`, so that it is smooth where it passes zero.
-    """
-
-    designs: Designs
-    name: str
-    sign: float
-    is_angle: bool = False
-    squared: bool = False
-
-    def extreme(self) -> CourseExtreme:
-        """Return the greatest values, times the sign."""
-        with np.errstate(all="ignore"):
-            value, place = self._searched(self.designs.computed_once((SampledCourse, self.name), self._course))
-        value = np.where(assembled_range(self.designs).assembled, self.sign * value, np.nan)
-        return CourseExtreme(value, np.where(np.isnan(value), np.nan, place))
-
-    def _course(self) -> SampledCourse:
-        """Return the course at the poses, or in a motion that has few between them too."""
-        number, poses = self.designs.number, self.designs.poses
-        parts = refinement_parts(poses)
-        if parts == 1:
-            course = np.broadcast_to(self.designs.outputs[self.name], (number, poses))
-        else:
-            places = np.broadcast_to(refined_samples(poses), (number, parts * (poses - 1) + 1))
-            course = self.designs.values_at(self.name, np.arange(number), places, self.is_angle)
-        # places of extremes are found in less time than their values
-        return SampledCourse(parts, course, course.argmax(axis=1), course.argmin(axis=1))
-
-    def _searched(self, sampled: SampledCourse) -> tuple[Number, Number]:
-        """Return the greatest values and their places: of samples, and of peaks in the windows around them."""
-        parts, course, *ends = sampled
-        k, other = ends if self.sign > 0.0 else ends[::-1]
-        every = np.arange(len(course))
-        begin, flat = every * course.shape[1], np.ravel(course)
-        best, least = (self.sign * flat.take(begin + own) for own in (k, other))
-        largest = np.maximum(np.abs(best), np.abs(least))
-        offers = [Offers(every, best, k / parts)]
-        rows, k = _peaks(course, best, self.sign)
-        if len(rows):
-            span = best - least
-            sought = SoughtPeaks(rows, np.full(len(rows), self.sign), largest.take(rows), span.take(rows))
-            f = DesignCourses(self, rows)
-            windows, places = f.windows_around(k, course.shape[1], parts)
-            offers += peaks(f, sought, windows, places, best, self.designs.poses - 1, NARROWINGS)
-        value, place, _ = best_of(offers, largest, np.asarray(self.squared))
-        # what is far beyond all others may be so
-        far = value > POLE * np.maximum(np.maximum(least, -best), 0.0)
-        narrowed = np.zeros(len(every), dtype=bool)
-        for one in offers if far.any() else ():
-            narrowed[one.kind] |= not one.exact
-        rows = np.flatnonzero(narrowed & far)
-        if len(rows):
-            # what is far beyond the median passes through infinity, as the reciprocal of a rate
-            low = POLE * np.abs(course[rows]) < value[rows, None]
-            value[rows[low.mean(axis=1) > 0.5]] = np.inf
-        return value, place
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class DesignCourses(ShortRepr):
-    """A course of designs by index `rows` (n,), at places."""
-
-    search: CourseSearch
-    rows: Number
-
-    def windows(self, which: Number, low: Number, high: Number) -> tuple[Windows, Number]:
-        """Return windows with their samples, and the places of these."""
-        places = Windows.samples(low, high)
-        return Windows(low, high, self._at(which, places), self._squared(low)), places
-
-    def windows_around(self, k: Number, samples: int, parts: int) -> tuple[Windows, Number]:
-        """Return windows around samples `k` (n,) of so many, `parts` of them from pose to pose; places of theirs."""
-        every = np.arange(float(samples))
-        low, high = np.maximum(every - 1.0, 0.0) / parts, np.minimum(every + 1.0, samples - 1.0) / parts
-        table, own, search = Windows.samples(low, high), low[k], self.search
-        values = search.designs.values_at(search.name, self.rows, table, search.is_angle, k)
-        return Windows(own, high[k], values, self._squared(own)), table.take(k, axis=0)
-
-    def _squared(self, like: Number) -> Number:
-        return np.broadcast_to(self.search.squared, len(like))
-
-    def places(self, which: Number, t: Number) -> Number:
-        """Return the places themselves."""
-        return t
-
-    def values(self, which: Number, places: Number) -> Number:
-        """Return the values at places, (n,)."""
-        return self._at(which, places[:, None])[:, 0]
-
-    def _at(self, which: Number, places: Number) -> Number:
-        return self.search.designs.values_at(self.search.name, self.rows[which], places, self.search.is_angle)
-
-
-def _peaks(course: Number, best: Number, sign: float) -> tuple[Number, Number]:
-    """Return designs and poses near which the greatest value may be: no neighbour is higher, the bend is large enough.
-
-    `best` are the greatest at the poses, (designs,). Values are times the sign.
-    """
-    poses, ordered = course.shape[1], (np.greater_equal, np.less_equal)
-    rises, drops = ordered if sign > 0.0 else ordered[::-1]
-    # all rows are compared as one, which their ends interrupt
-    flat = np.ravel(course)
-    peak, falls = np.empty((2, *course.shape), dtype=bool)
-    rises(flat[1:], flat[:-1], out=np.ravel(peak)[1:])
-    drops(flat[1:], flat[:-1], out=np.ravel(falls)[:-1])
-    peak[:, 0] = falls[:, -1] = True
-    peak &= falls
-    found = np.flatnonzero(peak)
-    rows = found // poses
-    k = found - rows * poses
-    if poses < 3:
-        return rows, k
-    # the bend at a neighbour stands for that at an end
-    inner = found + (k == 0) - (k == poses - 1)
-    before, own, after = (flat.take(inner + step) for step in (-1, 0, 1))
-    after -= own
-    own -= before
-    added = np.abs(after - own)
-    added *= MOST_ADDED
-    best = best.take(rows)
-    may = np.flatnonzero((sign * flat.take(found) + added >= best) & (added > ROUNDING * np.abs(best)))
-    return rows.take(may), k.take(may)
-
 
 # By how much each figure counts the greatest and the least value.
 PARTS_OF = {LEAST: ((-1.0, 1.0),), GREATEST: ((1.0, 1.0),), STROKE: ((1.0, 1.0), (-1.0, -1.0))}
@@ -217,18 +64,23 @@ class FigureResponse(Response):
         return found @ np.array([weight for _, weight in PARTS_OF[self.figure]])
 
     def extreme(self, designs: Designs, sign: float) -> CourseExtreme:
-        """Return the greatest values, with the sign -1 the least. They are searched once."""
-        return designs.computed_once((self.of, sign), lambda: self._search(designs, sign))
+        """Return the greatest values, with the sign -1 the least. They are searched once, both of a stroke together."""
+        known: dict[float, CourseExtreme] = designs.computed_once((CourseExtreme, self.of), dict)
+        if sign not in known:
+            wanted = dict.fromkeys([sign, *(one for one, _ in PARTS_OF[self.figure])])
+            known.update(self._search(designs, [one for one in wanted if one not in known]))
+        return known[sign]
 
-    def _search(self, designs: Designs, sign: float) -> CourseExtreme:
+    def _search(self, designs: Designs, signs: Sequence[float]) -> dict[float, CourseExtreme]:
         """Search them; designs that pass change points are solved."""
-        found = CourseSearch(designs, self.of, sign, self.is_angle, self.squared).extreme()
+        found = CourseSearch(designs, self.of, self.is_angle, self.squared).extremes(signs)
         handed = assembled_range(designs).to_solve
-        handed = handed[~np.isnan(found.value[handed])]
+        handed = handed[~np.isnan(found[signs[0]].value[handed])]
         if len(handed):
             (solved,) = extremes(designs.picked(handed).motion, self.of)
-            end = solved.greatest if sign > 0 else solved.least
-            found.value[handed], found.place[handed] = end.value, end.at.place
+            for sign, one in found.items():
+                end = solved.greatest if sign > 0 else solved.least
+                one.value[handed], one.place[handed] = end.value, end.at.place
         return found
 
 
