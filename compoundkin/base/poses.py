@@ -61,6 +61,16 @@ class Pose(ShortRepr):
             return p if isinstance(p, Series) else constant(p)
         return self.z + self.u * p
 
+    def place(self, p: Number) -> Number:
+        """Return where the link's point `p` is, without its rates.
+
+        >>> Pose(constant(1 + 0j), constant(1j)).place(2.0)
+        (1+2j)
+        """
+        if isinstance(p, (complex, float, int)) and p == 0:
+            return self.z.c[0]
+        return p if self is FIXED else self.z.c[0] + self.u.c[0] * p
+
     @property
     def angle(self) -> Series:
         """The angle of its orientation. It has full turns where they are counted, else is between -pi and pi.

@@ -551,15 +551,15 @@ def _in_sections(
     """Return the nodes in the order in which sections need them, and after how many each section ends."""
     found, ends = dict[int, None](), list[int]()
     for section in sections:
-        found.update(dict.fromkeys(k for k in graph.needed(section) if k in among))
+        found.update(dict.fromkeys(k for k in graph.needed(section, found) if k in among))
         ends.append(len(found))
     return list(found), tuple(ends)
 
 
 def _entries(graph: OperationGraph, nodes: Sequence[int], places: Mapping[int, int]) -> tuple[int, ...]:
-    found: list[int] = []
+    found, code = list[int](), {name: number for number, name in enumerate(CODES)}
     for k in nodes:
         node = graph.nodes[k]
         operands = [places[operand] for operand in node.operands]
-        found += [CODES.index(node.operation), places[k], *operands, *[0] * (WIDTH - 2 - len(operands))]
+        found += [code[node.operation], places[k], *operands, *[0] * (WIDTH - 2 - len(operands))]
     return tuple(found)

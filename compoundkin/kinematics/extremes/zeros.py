@@ -162,8 +162,8 @@ class ZeroSearch(Course):
 
     def _samples(self) -> _SampledValues:
         """Return what is known at poses and in windows."""
-        which = np.flatnonzero(self._candidates())
-        plain = np.setdiff1d(np.arange(len(self.stretches)), which)
+        candidates = self._candidates()
+        which, plain = np.flatnonzero(candidates), np.flatnonzero(~candidates)
         rows = [np.stack([np.repeat(plain, 2), np.tile([-1.0, 1.0], len(plain)), self._ends[plain].ravel()])]
         if len(which):
             values = self.windows(which, -np.ones(len(which)), np.ones(len(which)))[0].values[0]

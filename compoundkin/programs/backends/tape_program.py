@@ -182,8 +182,7 @@ KERNELS: dict[str, Callable[..., Any]] = {
 }
 
 
-@dataclass(frozen=True)
-class Instruction:
+class Instruction(NamedTuple):
     """One step: an operation on values, and its result. `place` is the array of loads and stores."""
 
     operation: str
@@ -297,14 +296,15 @@ class RowAllocation:
 
 def allocate_rows(steps: Sequence[Instruction], kept: Collection[int]) -> RowAllocation:
     """Give every result of some instructions a row. What is `kept` stays in its own."""
-    last = {value: at for at, step in enumerate(steps) for value in step.used()}
+    read = [step.used() for step in steps]
+    last = {value: at for at, values in enumerate(read) for value in values}
     found = RowAllocation()
-    for at, step in enumerate(steps):
-        ending = dict.fromkeys(v for v in step.used() if last[v] == at and v in found.rows and v not in kept)
-        early = [value for value in step.overwritable() if value in ending]
-        for value in dict.fromkeys(early):
-            found.release(value)
-            del ending[value]
+    for at, (step, values) in enumerate(zip(steps, read, strict=True)):
+        ending = dict.fromkeys([v for v in values if last[v] == at and v in found.rows and v not in kept])
+        for value in dict.fromkeys(step.overwritable()) if ending else ():
+            if value in ending:
+                found.release(value)
+                del ending[value]
         if step.result is not None:
             found.take(step.result, step.is_truth)
             if step.result not in last and step.result not in kept:

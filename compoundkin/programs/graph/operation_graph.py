@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, field
 from math import frexp, inf, nan
 from typing import Any, NamedTuple
@@ -191,14 +191,14 @@ class OperationGraph(ShortRepr):
         found = OPERATIONS.get(self.nodes[node].operation)
         return found is not None and found.is_truth
 
-    def needed(self, wanted: Iterable[int]) -> list[int]:
-        """Return all nodes that some nodes are computed from, and themselves, in order."""
-        found, waiting = set[int](), list(wanted)
+    def needed(self, wanted: Iterable[int], known: Collection[int] = ()) -> list[int]:
+        """Return all nodes that some nodes are computed from, and themselves, in order; without what is `known`."""
+        nodes, found, waiting = self.nodes, set[int](), list(wanted)
         while waiting:
             node = waiting.pop()
-            if node not in found:
+            if node not in found and node not in known:
                 found.add(node)
-                waiting.extend(self.nodes[node].operands)
+                waiting.extend(nodes[node].operands)
         return sorted(found)
 
     def count(self, wanted: Iterable[int]) -> int:

@@ -296,7 +296,7 @@ class MovingSketch(ShortRepr):
 
     def places(self, part: MovingPart) -> Number:
         """Return where the point of a part is on the picture, complex (poses,)."""
-        return np.broadcast_to(self.window.at(self.scene.whole[part.link].at(part.at).c[0]), (self.scene.count,))
+        return np.broadcast_to(self.window.at(self.scene.whole[part.link].place(part.at)), (self.scene.count,))
 
     def turns(self, link: str) -> Number:
         """Return the turn of a link on the picture from the pose shown. It is unit complex (poses,)."""
@@ -467,12 +467,12 @@ def extent(scene: Scene) -> Iterator[Number]:
             rim = mark.radius * np.array([1, 1j, -1, -1j])
             yield scene.at(seen.link, mark.at) + rim
         elif isinstance(mark, Groove | Strap | Outline):
-            yield scene.here[seen.link].at(mark.line).c[0]
+            yield scene.here[seen.link].place(mark.line)
         elif isinstance(mark, Track):
-            yield scene.here[seen.link].at(mark.at + mark.along * np.array([mark.low, mark.high])).c[0]
+            yield scene.here[seen.link].place(mark.at + mark.along * np.array([mark.low, mark.high]))
         elif isinstance(mark, Sliding):
             way = np.array([mark.low, mark.high])
             if guides.is_rod(seen):
-                yield scene.here[seen.members[1]].at(mark.block - mark.turn * way).c[0]
+                yield scene.here[seen.members[1]].place(mark.block - mark.turn * way)
             elif not guides.is_cylinder(seen):
-                yield scene.here[seen.members[0]].at(mark.at + mark.along * way).c[0]
+                yield scene.here[seen.members[0]].place(mark.at + mark.along * way)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -74,6 +75,10 @@ class LabelCourse:
         found = places - self.shift.reshape(shape)
         # points do not turn, and complex numbers are slow to divide
         return found if np.all(self.turn == 1.0) else found / self.turn.reshape(shape)
+
+    def at_poses(self, poses: Number) -> LabelCourse:
+        """Return the course at some of its poses."""
+        return LabelCourse(self.turn[poses], self.shift[poses])
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,13 +247,37 @@ class Surroundings:
     def costs(self, label: Label, course: LabelCourse) -> Number:
         """Return what each place costs on the average of the poses."""
         at, half = np.array(label.places), label.half + ROOM * (1 + 1j)
-        lines = course.relative(self.lines).reshape(-1, 2)
-        middles = course.relative(self.rounds[..., 0])
-        rounds = np.stack([middles, self.rounds[..., 1]], axis=-1).reshape(-1, 2)
-        poses = len(course.turn)
+        middle = at.mean()
+        # what is farther than this from the middle of the places, at its pose, is on none of them
+        reach, along = np.abs(at - middle).max() + abs(half) + TOUCHING, middle * course.turn + course.shift
+        pose, line = np.nonzero(_are_near(self._spans, along, reach))
+        lines = course.at_poses(pose).relative(self.lines[pose, line])
+        pose, line = np.nonzero(_are_near(self._discs, along, reach))
+        middles = course.at_poses(pose).relative(self.rounds[pose, line, 0])
+        rounds = np.stack([middles, self.rounds[pose, line, 1]], axis=-1)
         outside = beyond(course.at(at), half, self.width, self.height)
-        found: Number = np.array(label.costs) + on_shapes(at, half, lines, rounds) / poses - on_own(label, at, half)
+        covered = on_shapes(at, half, lines, rounds) / len(course.turn)
+        found: Number = np.array(label.costs) + covered - on_own(label, at, half)
         return found + LARGER * outside.mean(axis=0)
+
+    @cached_property
+    def _spans(self) -> tuple[Number, Number]:
+        """The middles of the lines, and half their lengths."""
+        one, two = self.lines[..., 0], self.lines[..., 1]
+        return (one + two) / 2.0, np.abs(two - one) / 2.0
+
+    @cached_property
+    def _discs(self) -> tuple[Number, Number]:
+        """The middles of the circles, and their radii."""
+        return self.rounds[..., 0], self.rounds[..., 1].real
+
+
+def _are_near(discs: tuple[Number, Number], along: Number, reach: float) -> Number:
+    """Return which discs (poses, count) are nearer to a course (poses,) than so far. Rounding finds some more."""
+    middles, radii = discs
+    x, y = middles.real - along.real[:, None], middles.imag - along.imag[:, None]
+    near: Number = x * x + y * y <= (radii + reach * (1.0 + TOUCHING)) ** 2
+    return near
 
 
 def placed_along(labels: Sequence[Label], courses: LabelCourses, around: Surroundings) -> dict[str, complex]:
@@ -431,25 +460,48 @@ def names_at_places(named: Iterable[tuple[str, complex]], nearest: float) -> lis
 
 def placed(labels: Sequence[Label], shapes: Iterable[Shape], width: float, height: float) -> dict[str, complex]:
     """Return a place for each label, in the order of the labels. All are placed again twice."""
-    lines, rounds = obstacles(shapes)
-    fixed = {}
-    for label in labels:
-        at, half = np.array(label.places), label.half + ROOM * (1 + 1j)
+    (lines, rounds), fixed = obstacles(shapes), dict[str, Number]()
+    for some in _together(labels, len(lines)):
+        counts = [len(label.places) for label in some]
+        at, costs = (np.concatenate([getattr(label, which) for label in some]) for which in ("places", "costs"))
+        half = np.repeat([label.half + ROOM * (1 + 1j) for label in some], counts)
         covered = on_shapes(at, half, lines, rounds) + beyond(at, half, width, height)
-        fixed[label.key] = np.array(label.costs) + covered - on_own(label, at, half)
+        found = costs + covered - _on_their_own(some, at, half, np.repeat(np.arange(len(some)), counts))
+        fixed |= zip((label.key for label in some), np.split(found, np.cumsum(counts)[:-1]), strict=True)
     still = np.ones((1, len(labels)), dtype=complex)
     return arranged_labels(labels, fixed, LabelCrowd(labels, still, 0.0 * still))
 
 
+# So many lines are compared with so many places at once.
+PAIRS = 1 << 16
+
+
+def _together(labels: Sequence[Label], lines: int) -> Iterator[list[Label]]:
+    """Yield labels, in order, as many at once as have few places beside so many lines."""
+    some, count = list[Label](), 0
+    for label in labels:
+        count += len(label.places)
+        if some and count * lines > PAIRS:
+            yield some
+            some, count = [], len(label.places)
+        some.append(label)
+    if some:
+        yield some
+
+
 def arranged_labels(labels: Sequence[Label], fixed: Mapping[str, Number], crowd: LabelCrowd) -> dict[str, complex]:
     """Return a place for each label. All are placed again twice, by fixed costs and those of being on others."""
+    own = [fixed[label.key] for label in labels]
+    first = [int(np.argmin(np.round(costs, DIGITS))) for costs in own]
     found: dict[str, complex] = {}
     for _ in range(1 + ROUNDS):
         for k, label in enumerate(labels):
             if crowd.is_new_for(k):
-                costs = fixed[label.key] + crowd.costs(k, label)
-                found[label.key] = label.places[int(np.argmin(np.round(costs, DIGITS)))]
-                crowd.put(k, found[label.key])
+                # others only make places dearer: where the best is on none of them, it stays the best
+                is_free = crowd.is_free(k, first[k])
+                best = first[k] if is_free else int(np.argmin(np.round(own[k] + crowd.costs(k), DIGITS)))
+                found[label.key] = label.places[best]
+                crowd.put(k, best)
     return found
 
 
@@ -460,21 +512,19 @@ class LabelCrowd:
     """
 
     def __init__(self, labels: Sequence[Label], turn: Number, shift: Number) -> None:
-        self._turn, self._shift = turn, shift
         self._half = np.array([label.half for label in labels])
         # what is nowhere yet is near nothing
         self._middles: Number = np.full(turn.shape, complex(np.nan, np.nan))
-        self._neighbours = self._that_may_meet([self._moved(k, label) for k, label in enumerate(labels)])
+        # of each label (poses, places)
+        self._places: list[Number] = [
+            np.array(label.places) * turn[:, k, None] + shift[:, k, None] for k, label in enumerate(labels)
+        ]
+        self._neighbours = self._that_may_meet(self._places)
         self._is_new = np.ones(len(labels), dtype=bool)
-
-    def _moved(self, k: int, label: Label) -> Number:
-        """Return the places of a label at the poses, (poses, places)."""
-        moved: Number = np.array(label.places) * self._turn[:, k, None] + self._shift[:, k, None]
-        return moved
 
     def _that_may_meet(self, moved: Sequence[Number]) -> list[Number]:
         """Return for each label the indices of the others that it may ever be on: of all else nothing is counted."""
-        nothing: Number = np.zeros((len(self._turn), 0))
+        nothing: Number = np.zeros((len(self._middles), 0))
         least_x, most_x, least_y, most_y = (
             np.column_stack([nothing, *(extreme(part(one), axis=1) for one in moved)])
             for part in (np.real, np.imag) for extreme in (np.min, np.max)
@@ -493,20 +543,26 @@ class LabelCrowd:
         """Return whether any that a label may be on was put elsewhere since it was put."""
         return bool(self._is_new[k])
 
-    def put(self, k: int, place: complex) -> None:
-        """Put a label at a place."""
-        at = place * self._turn[:, k] + self._shift[:, k]
+    def is_free(self, k: int, place: int) -> bool:
+        """Return whether a label at one of its places is on none of the others."""
+        others = self._neighbours[k]
+        gap = self._places[k][:, place, None] - self._middles[:, others]
+        return not crowded(gap, self._half[k], self._half[others]).any()
+
+    def put(self, k: int, place: int) -> None:
+        """Put a label at one of its places."""
+        at = self._places[k][:, place]
         self._is_new[k] = False
         if not np.array_equal(at, self._middles[:, k]):
             self._middles[:, k] = at
             self._is_new[self._neighbours[k]] = True
 
-    def costs(self, k: int, label: Label) -> Number:
+    def costs(self, k: int) -> Number:
         """Return what each place of a label costs, on the average of the poses."""
-        places = self._moved(k, label)
+        places = self._places[k]
         near = self._near(k, places)
         gap = places - self._middles[:, near].T[:, :, None]
-        found: Number = crowded(gap, label.half, self._half[near][:, None, None]).sum(axis=0).mean(axis=0)
+        found: Number = crowded(gap, self._half[k], self._half[near][:, None, None]).sum(axis=0).mean(axis=0)
         return found
 
     def _near(self, k: int, places: Number) -> Number:
@@ -524,7 +580,7 @@ class LabelCrowd:
         return near
 
 
-def beyond(at: Number, half: complex, width: float, height: float) -> Number:
+def beyond(at: Number, half: complex | Number, width: float, height: float) -> Number:
     """Return what it costs places to be outside the picture."""
     outside = np.maximum(0.0, half.real - at.real) + np.maximum(0.0, at.real + half.real - width)
     return EDGE * (outside + np.maximum(0.0, half.imag - at.imag) + np.maximum(0.0, at.imag + half.imag - height))
@@ -535,32 +591,41 @@ def on_own(label: Label, at: Number, half: complex) -> Number:
     return LINE * lengths_in_boxes(at, half, np.array(label.own)) if label.own else 0.0
 
 
-def on_shapes(at: Number, half: complex, lines: Number, rounds: Number) -> Number:
+def _on_their_own(labels: Sequence[Label], at: Number, half: Number, owner: Number) -> Number:
+    """Return what `on_shapes` counts of the lines that labels may be on; `owner` is whose a place is."""
+    own = np.array([line for label in labels for line in label.own], dtype=complex).reshape(-1, 2)
+    of = np.repeat(np.arange(len(labels)), [len(label.own) for label in labels])
+    return LINE * lengths_in_boxes(at, half, own, owner[:, None] == of) if len(own) else np.zeros(len(at))
+
+
+def on_shapes(at: Number, half: complex | Number, lines: Number, rounds: Number) -> Number:
     """Return what it costs places to be on lines and circles."""
     costs: Number = LINE * lengths_in_boxes(at, half, lines)
     if len(rounds):
         x, y, radius = rounds[:, 0].real, rounds[:, 0].imag, rounds[:, 1].real
         near = _within(at.real, half.real, x - radius, x + radius) & _within(at.imag, half.imag, y - radius, y + radius)
         x, y, radius = x[near], y[near], radius[near]
-        gap = np.abs(at.real[:, None] - x) - half.real - radius
-        high = np.abs(at.imag[:, None] - y) - half.imag - radius
+        wide, tall = (np.reshape(side, (-1, 1)) for side in (half.real, half.imag))
+        gap = np.abs(at.real[:, None] - x) - wide - radius
+        high = np.abs(at.imag[:, None] - y) - tall - radius
         costs = costs + ROUND * np.count_nonzero((gap < 0) & (high < 0), axis=1)
     return costs
 
 
-def _within(along: Number, reach: float, low: Number, high: Number) -> Number:
+def _within(along: Number, reach: float | Number, low: Number, high: Number) -> Number:
     """Return which of some ranges along an axis can be met by any of the places: the others cost nothing."""
-    return (low <= along.max() + reach) & (high >= along.min() - reach)
+    return (low <= (along + reach).max()) & (high >= (along - reach).min())
 
 
 # Lines this near to a box, in picture units, may touch it.
 TOUCHING = 1e-6
 
 
-def lengths_in_boxes(at: Number, half: complex, lines: Number) -> Number:
+def lengths_in_boxes(at: Number, half: complex | Number, lines: Number, counted: Number | None = None) -> Number:
     """Return the lengths of all lines in the box around each place, together.
 
-    Each is in parts of the box's half diagonal, at least one.
+    Each is in parts of the box's half diagonal, at least one. `half` is of all boxes or of each, `counted` (places,
+    lines) which lines count for which.
     """
     one, two = lines[:, 0], lines[:, 1]
     left, right = np.minimum(one.real, two.real), np.maximum(one.real, two.real)
@@ -569,10 +634,11 @@ def lengths_in_boxes(at: Number, half: complex, lines: Number) -> Number:
         _within(at.real, half.real + TOUCHING, left, right) & _within(at.imag, half.imag + TOUCHING, low, high)
     )
     left, right, low, high = left[near], right[near], low[near], high[near]
-    x, y, reach = at.real[:, None], at.imag[:, None], half + TOUCHING * (1 + 1j)
+    x, y, reach = at.real[:, None], at.imag[:, None], np.reshape(half + TOUCHING * (1 + 1j), (-1, 1))
     meets = (left <= x + reach.real) & (right >= x - reach.real) & (low <= y + reach.imag) & (high >= y - reach.imag)
     # few lines meet few boxes: what follows is of these pairs alone
-    place, line = np.nonzero(meets)
+    place, line = np.nonzero(meets if counted is None else meets & counted[:, near])
+    half = np.broadcast_to(half, len(at))[place]
     start, way = one[near][line] - at[place], (two - one)[near][line]
     first: Number = np.zeros(len(place))
     last = np.ones_like(first)
@@ -585,7 +651,7 @@ def lengths_in_boxes(at: Number, half: complex, lines: Number) -> Number:
             first = np.maximum(first, np.where(out, np.inf, entry))
             last = np.minimum(last, np.where(still, np.inf, np.maximum(entering, leaving)))
     length = np.maximum(last - first, 0.0) * np.abs(way)
-    counts = np.where(last > first, 1.0 + length / abs(half), 0.0)
+    counts = np.where(last > first, 1.0 + length / np.abs(half), 0.0)
     return np.bincount(place, counts, len(at))
 
 

@@ -97,7 +97,7 @@ class Painter:
 
     def line(self, link: str, points: Any) -> tuple[complex, ...]:
         """Return a line of a link on the picture."""
-        return self.window.line(self.scene.here[link].at(points).c[0])
+        return self.window.line(self.scene.here[link].place(points))
 
     def along(self, link: str, e: Any) -> complex:
         """Return a direction of a link on the picture."""

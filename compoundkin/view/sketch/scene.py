@@ -215,11 +215,11 @@ class Scene:
     def at(self, link: str, p: Number) -> complex:
         """Return where a point of a link is at the pose shown."""
         if type(p) is not complex:
-            return as_place(self.here[link].at(p).c[0])
+            return as_place(self.here[link].place(p))
         # large mechanisms are painted group by group, and points asked for again and again
         found = self._found.get((link, p))
         if found is None:
-            found = self._found[link, p] = as_place(self.here[link].at(p).c[0])
+            found = self._found[link, p] = as_place(self.here[link].place(p))
         return found
 
     @cached_property
@@ -229,12 +229,12 @@ class Scene:
 
     def turned(self, link: str, along: Number) -> complex:
         """Return a direction on a link, in the world."""
-        return as_place((self.here[link].u * along).c[0])
+        return as_place(self.here[link].u.c[0] * along)
 
     def places(self, letter: str) -> Number:
         """Return where a point is along the motion, (poses,)."""
         link = self.mechanism.carriers[letter][0]
-        return np.atleast_1d(self.whole[link].at(self.points[link][letter]).c[0])
+        return np.atleast_1d(self.whole[link].place(self.points[link][letter]))
 
     def path(self, letter: str) -> list[Number]:
         """Return the path of a point along the motion. It is in pieces where poses between cannot be assembled."""
@@ -313,7 +313,7 @@ class Scene:
 
     def ghost(self, k: int) -> Scene:
         """Return the same scene at the k-th assembled pose of the motion."""
-        poses = {name: Pose(pose.z, pose.u).entry((k,)) for name, pose in self.whole.items()}
+        poses = {name: Pose(pose.z, pose.u).trimmed(0).entry((k,)) for name, pose in self.whole.items()}
         return Scene(self.structure, self.whole, poses, self.points, self.ends, known=self.known)
 
     def compact(self, longest: float) -> Scene:

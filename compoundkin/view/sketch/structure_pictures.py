@@ -521,13 +521,15 @@ def _graph_edges(
 
 def _past(first: complex, second: complex, middle: complex, across: complex, others: Number) -> complex:
     """Return the middle of a line moved to the side as little as it takes to go past the circles of other links."""
-    offs = sorted((sense * DETOUR * k for k in range(DETOURS) for sense in (1.0, -1.0)), key=abs)
-    for off in offs if len(others) else ():
-        bend = middle + across * off
-        near = np.minimum(*(_distances(others, np.array(end), np.array(bend)) for end in (first, second)))
-        if near.min() > NODE + AROUND:
-            return bend
-    return middle
+    offs = np.array(sorted((sense * DETOUR * k for k in range(DETOURS) for sense in (1.0, -1.0)), key=abs))
+    bends, room = middle + across * offs, NODE + AROUND
+    ends = np.array([first, second])[:, None]
+    if not len(others) or _distances(others, ends, bends[0]).min() > room:
+        return middle
+    # what is farther than this from the straight line is near to no bent one
+    others = others[_distances(others, ends, bends[0]).min(axis=0) < 2.0 * room + DETOUR * DETOURS]
+    clear = _distances(others, ends[..., None], bends[:, None]).min(axis=(0, 2)) > room
+    return complex(bends[np.argmax(clear)]) if clear.any() else middle
 
 
 def _bulge(k: int) -> float:
@@ -564,21 +566,25 @@ def spread_links(names: Sequence[str], pairs: Sequence[Pair]) -> list[complex]:
     tried = (_relaxed_places(ideal, orders[first : first + step]) for first in range(0, len(orders), step))
     places = min(chain.from_iterable(tried), key=lambda found: _faults(found, joined))
     places = places - places[0]
-    # the frame below, as it is drawn
-    far = np.mean(places) if len(names) > 1 else 1j
-    return [complex(p) for p in places * 1j * np.conjugate(far) / (abs(far) or 1.0) * APART]
+    # the frame below, as it is drawn; in the middle of all others it is as it relaxed
+    middle = np.mean(places)
+    far = middle if abs(middle) > CENTRED else 1j
+    return [complex(p) for p in places * 1j * np.conjugate(far) / abs(far) * APART]
 
 
 def _relaxed_places(ideal: Number, orders: Number) -> Number:
     """Places (orders, links) that have relaxed from circles on which the links stand in some orders."""
     count = orders.shape[1]
-    places = np.exp(2j * np.pi * orders / max(count, 1) + 1j * START) * max(1.0, count / 4.0)
+    angles, radius = 2 * np.pi * orders / max(count, 1) + START, max(1.0, count / 4.0)
+    places = np.stack([np.cos(angles), np.sin(angles)], axis=-1) * radius
     weights, itself = np.where(ideal > 0, 1.0 / np.maximum(ideal, 1.0) ** 2, 0.0), np.eye(count)
+    whole, wished = weights.sum(axis=1)[:, None], weights * ideal
     for _ in range(ROUNDS if count > 2 else 0):
-        apart = places[:, :, None] - places[:, None]
-        pull = weights * (places[:, None] + ideal * apart / (np.abs(apart) + itself))
-        places = pull.sum(axis=2) / weights.sum(axis=1)
-    return places
+        across, along = (places[:, :, None, k] - places[:, None, :, k] for k in (0, 1))
+        # the pull of j on i: weight (place of j + ideal distance, in the direction from j to i)
+        pull = wished / (np.sqrt(across * across + along * along) + itself)
+        places = ((weights - pull) @ places + pull.sum(axis=2)[:, :, None] * places) / whole
+    return places[..., 0] + 1j * places[..., 1]
 
 
 def _faults(places: Number, joined: Sequence[tuple[int, int]]) -> int:
@@ -615,6 +621,8 @@ BATCH = 1 << 14
 STARTS, MOST_STARTS = 500, 40
 # Products of distances below this are rounding.
 CLEAR = 1e-9
+# Nearer than this to the middle of all others, in steps, a link is in it: what is left is rounding.
+CENTRED = 1e-6
 # Not along an axis, so that no two links start at one height.
 START = 0.3
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from base64 import b64decode, b64encode
 from collections.abc import Mapping, Sequence
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -115,7 +116,7 @@ def table_data(table: OperationTable) -> dict[str, Any]:
 
 def _number(value: float) -> float | str:
     """Return a number as JSON has it; what is not finite as a text that a script reads."""
-    return value if np.isfinite(value) else str(value).replace("inf", "Infinity").replace("nan", "NaN")
+    return value if isfinite(value) else str(value).replace("inf", "Infinity").replace("nan", "NaN")
 
 
 def packed_integers(numbers: Sequence[int]) -> str:

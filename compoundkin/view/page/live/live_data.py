@@ -258,7 +258,7 @@ class LiveData:
     def _link(self, name: str) -> dict[str, Any]:
         at = [[self.places[node] for node in nodes] for nodes in self.program.links[name]]
         wrapped = self.program.mechanism.block.world[name].theta is None
-        return {"at": at, "wrapped": wrapped, "own": self._own.has_link(name)}
+        return {"at": at, "wrapped": wrapped, "own": self._own.links[name]}
 
     @cached_property
     def _own(self) -> ReproducedValues:
@@ -326,43 +326,52 @@ class ReproducedValues:
         nodes = list(dict.fromkeys((*(node for _, node in program.goods), *moved, *told)))
         return dict(zip(nodes, program.own(nodes, self.chosen), strict=True))
 
-    def has_link(self, name: str) -> bool:
-        """Return whether it reproduces a link's pose, velocities and accelerations."""
-        link, order = self.program.motion.links[name], self.program.order
-        wrapped = self.program.mechanism.block.world[name].theta is None
-        nodes = [node for moved in self.program.links[name] for node in moved]
-        found = [self._values[node] for node in nodes] if self.closes else []
-        known = [
-            part
-            for k in range(order + 1)
-            for part in self._moved(link.origin.derivative(k), getattr(link, OF_LINKS[k]))
-        ]
-        return self.closes and all(
-            self._agrees(one, other, wrapped and k == 2)
-            for k, (one, other) in enumerate(zip(found, known, strict=True))
-        )
+    @cached_property
+    def links(self) -> Mapping[str, bool]:
+        """Whether it reproduces the pose, the velocities and accelerations of each link."""
+        program, names, orders = self.program, [*self.program.links], range(self.program.order + 1)
+        if not self.closes:
+            return dict.fromkeys(names, False)
+        good = np.ones(len(names), dtype=bool)
+        for k in orders:
+            nodes = [program.links[name][k] for name in names]
+            found = [np.array([self._row(self._values[node[part]]) for node in nodes]) for part in range(3)]
+            moved = [program.motion.links[name] for name in names]
+            origins = np.array([self._of(link.origin.derivative(k)) for link in moved])
+            turned = np.array([self._of(getattr(link, OF_LINKS[k])) for link in moved])
+            wrapped = np.array([k == 0 and program.mechanism.block.world[name].theta is None for name in names])
+            good &= self._agree(found[0], origins.real) & self._agree(found[1], origins.imag)
+            good[wrapped] &= self._agree(_continuous(found[2][wrapped]), turned[wrapped])
+            good[~wrapped] &= self._agree(found[2][~wrapped], turned[~wrapped])
+        return dict(zip(names, good.tolist(), strict=True))
 
     def has_output(self, output: ProgramOutput, nodes: Sequence[int]) -> bool:
         """Return whether it reproduces an output."""
         values = np.broadcast_to(quantity(self.program.motion, output.name).values, self.program.motion.shape)
         parts = (values,) if len(nodes) == 1 else (values.real, values.imag)
-        found = [self._values[node] for node in nodes] if self.closes else []
-        return self.closes and all(
-            self._agrees(one, self._of(part), output.is_wrapped) for one, part in zip(found, parts, strict=True)
-        )
+        if not self.closes:
+            return False
+        found = np.array([self._row(self._values[node]) for node in nodes])
+        known = np.array([self._of(part) for part in parts])
+        return bool(self._agree(_continuous(found) if output.is_wrapped else found, known).all())
 
-    def _moved(self, z: Number, turned: Number) -> tuple[Number, Number, Number]:
-        return self._of(np.real(z)), self._of(np.imag(z)), self._of(turned)
+    def _row(self, found: Number) -> Number:
+        """Return values of a node at all poses; where the motion is not assembled there are none."""
+        return np.where(self.failed, np.nan, found)
 
     def _of(self, values: Number) -> Number:
         return np.broadcast_to(values, self.program.motion.shape)[..., self.chosen]
 
-    def _agrees(self, found: Number, known: Number, wrapped: bool) -> bool:
-        values = np.where(self.failed, np.nan, found)
-        if wrapped:
-            values = unwrapped(np.where(values == -np.pi, np.pi, values))
-        largest = np.nanmax(np.abs(np.where(np.isfinite(known), known, 0.0)), initial=1e-300)
-        return bool(np.allclose(values, known, rtol=0.0, atol=AGREES * largest + 1e-12, equal_nan=True))
+    def _agree(self, found: Number, known: Number) -> Number:
+        """Return which rows (count, poses) agree."""
+        size = np.abs(np.where(np.isfinite(known), known, 0.0)).max(axis=1, keepdims=True, initial=1e-300)
+        near = np.isclose(found, known, rtol=0.0, atol=AGREES * size + 1e-12, equal_nan=True)
+        return near.all(axis=1)
+
+
+def _continuous(angles: Number) -> Number:
+    """Return angles (count, poses) continuous along each row."""
+    return unwrapped(np.where(angles == -np.pi, np.pi, angles))
 
 
 def followed_quantities(motion: Motion, outputs: Sequence[str] = ()) -> tuple[str, ...]:
