@@ -182,10 +182,6 @@ class Singularities(Sequence[Singularity], DisplaysHtml, ShortRepr):
     def __iter__(self) -> Iterator[Singularity]:
         return iter(self.found)
 
-    def of_kind(self, kind: str) -> tuple[Singularity, ...]:
-        """Return those of one kind."""
-        return tuple(one for one in self.found if one.kind == kind)
-
     def text(self) -> str:
         """Return them as text, angles in degrees."""
         return "\n".join(one.text() for one in self.found) or "No pose along the motion is singular."

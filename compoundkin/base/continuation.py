@@ -71,20 +71,6 @@ def trace_paths(step: StepFunction, alive: Number, lengths: StepLengths) -> Numb
     return arrived
 
 
-def runge_kutta(slope: Callable[[Number, Number], Number], x: Number, t: Number, h: Number) -> Number:
-    """Predict ``x(t + h)`` by the classical step of fourth order. The paths (paths, d) obey dx/dt = slope(x, t).
-
-    >>> runge_kutta(lambda x, t: x, np.array([[1.0]]), np.zeros(1), np.array([0.1])).round(6).tolist()
-    [[1.105171]]
-    """
-    step = h[:, None]
-    one = slope(x, t)
-    two = slope(x + step / 2 * one, t + h / 2)
-    three = slope(x + step / 2 * two, t + h / 2)
-    four = slope(x + step * three, t + h)
-    return x + step / 6 * (one + 2 * two + 2 * three + four)
-
-
 # A homotopy H(x, t) = 0: at unknowns x (d, paths) and t (paths,) of the paths with some indices it gives Newton's steps
 # -H_x^-1 H and the slopes dx/dt = -H_x^-1 H_t, both (d, paths).
 Homotopy: TypeAlias = Callable[[Number, Number, Number], tuple[Number, Number]]

@@ -155,9 +155,9 @@ def show_error(error: CompoundkinError) -> None:
     """Write an error to stderr: what, where, and the remedy."""
     several = len(error.problems) > 1 or error.heading
     if several:
-        say(f"{_red('Error:')} {error.heading or f'{len(error.problems)} problems'}")
+        say(f"{_error_word()} {error.heading or f'{len(error.problems)} problems'}")
     for problem in error.problems:
-        head = "  - " if several else f"{_red('Error:')} "
+        head = "  - " if several else f"{_error_word()} "
         indent = "    " if several else "  "
         say(f"{head}{escaped_text(problem.what)}")
         for term, text in (("where", problem.where), ("remedy", problem.remedy)):
@@ -191,8 +191,8 @@ def report_width() -> int:
     return max(NARROWEST, min(WIDEST, shutil.get_terminal_size((WIDTH, 24)).columns))
 
 
-def _red(text: str) -> str:
-    return click.style(text, fg="red", bold=True) if has_colour(sys.stderr) else text
+def _error_word() -> str:
+    return click.style("Error:", fg="red", bold=True) if has_colour(sys.stderr) else "Error:"
 
 
 def _discard_stream(stream: Any) -> None:

@@ -212,7 +212,7 @@ def _force(mechanism: Mechanism, units: Units, text: str) -> Item:
     """Return a force on a pin, or on a point of one link."""
     from compoundkin.model.loads.force import force
 
-    place, x, y = _named(mechanism, "--load", text, 2, _sizes("force", units.force))
+    place, x, y = _named("--load", text, 2, _sizes("force", units.force))
     link, _, letter = place.rpartition(".")
     carriers = mechanism.carriers
     if letter not in carriers:
@@ -237,14 +237,14 @@ def _force(mechanism: Mechanism, units: Units, text: str) -> Item:
 
 def _of_link(mechanism: Mechanism, option: str, text: str, sizes: Mapping[str, float]) -> tuple[str, tuple[float]]:
     """Return a link and its value."""
-    name, value = _named(mechanism, option, text, 1, sizes)
+    name, value = _named(option, text, 1, sizes)
     if name not in mechanism.links:
         where = f"{option} {text}"
         raise UnknownName(Problem(where, f"there is no link {name!r}", suggestion(name, list(mechanism.links))))
     return name, (value,)
 
 
-def _named(mechanism: Mechanism, option: str, text: str, count: int, sizes: Mapping[str, float]) -> tuple[Any, ...]:
+def _named(option: str, text: str, count: int, sizes: Mapping[str, float]) -> tuple[Any, ...]:
     """Return a name and its numbers."""
     name, equals, value = text.partition("=")
     if not (equals and name.strip()):

@@ -49,11 +49,6 @@ class EquilibriumPosition(ShortRepr):
     stability: str
     stiffness: Number
 
-    @property
-    def is_stable(self) -> bool:
-        """Whether it returns from all sides."""
-        return self.stability == STABLE
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EquilibriumPositions(Sequence[EquilibriumPosition], ShortRepr):
@@ -130,7 +125,7 @@ def equilibria(mechanism: Mechanism, values: Any = None) -> EquilibriumPositions
         motion, free = _motion(mechanism, values)
         if len(free) == 1:
             return _of_one(motion, free[0])
-        found = critical_points(motion, free, ROUNDING)
+        found = critical_points(motion, free)
     return EquilibriumPositions(mechanism, free, found.positions, found.indifferent)
 
 
@@ -244,16 +239,16 @@ class CriticalPoints(ShortRepr):
     indifferent: bool
 
 
-def critical_points(motion: Motion, free: tuple[str, ...], rounding: float) -> CriticalPoints:
+def critical_points(motion: Motion, free: tuple[str, ...]) -> CriticalPoints:
     """Return the critical points found from a grid of places, which are a motion's designs.
 
-    Efforts below the part `rounding` of a load's are zero.
+    Efforts below the part `ROUNDING` of a load's are zero.
     """
     holding = HoldingEfforts(free)
     scales = holding.scales(motion)
     places = _places(motion, free)
     low, high = places.min(axis=0), places.max(axis=0)
-    if np.nanmax(np.abs(_efforts(holding, motion)) / np.maximum(scales, np.finfo(float).tiny)) <= rounding:
+    if np.nanmax(np.abs(_efforts(holding, motion)) / np.maximum(scales, np.finfo(float).tiny)) <= ROUNDING:
         return CriticalPoints((), True)
     reach = LONGEST * np.array([_spacing(places[:, k]) for k in range(len(free))])
     for _ in range(NEWTON_STEPS):
@@ -268,9 +263,9 @@ def critical_points(motion: Motion, free: tuple[str, ...], rounding: float) -> C
         if again is None:
             return CriticalPoints((), False)
         motion, places = again, places[kept]
-        if np.max(np.abs(steps[kept]) / reach) <= rounding:
+        if np.max(np.abs(steps[kept]) / reach) <= ROUNDING:
             break
-    small = np.all(np.abs(_efforts(holding, motion)) <= RESIDUAL_ROUNDING * rounding * scales, axis=1)
+    small = np.all(np.abs(_efforts(holding, motion)) <= RESIDUAL_ROUNDING * ROUNDING * scales, axis=1)
     within = np.all((places >= low - SAME_POINT * reach) & (places <= high + SAME_POINT * reach), axis=1)
     return CriticalPoints(_distinct(motion, holding, places, small & within, scales), False)
 

@@ -278,13 +278,6 @@ class Inputs(ShortRepr):
         slopes = {k: (between.drives[k][0], slope(v[0], i)) for k, v in self.drives.items()}
         return replace(between, drives=slopes)
 
-    def refined(self, per_pose: int) -> Inputs:
-        """Return the motion with samples between its poses, `per_pose` a pose."""
-        if per_pose == 1 or self.poses == 1:
-            return self
-        count = (self.poses - 1) * per_pose + 1
-        return self.at(np.linspace(0.0, self.poses - 1.0, count)).of_poses(count)
-
     def pick(self, designs: Number, s: Number) -> Inputs:
         """Return one pose of each of some designs, `s` its place, as a column."""
         i = self._interval(np.floor(s))
@@ -293,10 +286,6 @@ class Inputs(ShortRepr):
     def ahead(self, designs: Number, s: Number) -> Inputs:
         """Do as `pick`. The drivers' speeds are the slopes with respect to `s`, of the way on from there."""
         return self._sloped(designs, s, self._interval(np.floor(s)))
-
-    def behind(self, designs: Number, s: Number) -> Inputs:
-        """Do as `ahead`, with the slopes of the way to a pose there."""
-        return self._sloped(designs, s, self._interval(np.ceil(s) - 1.0))
 
     def _interval(self, start: Number) -> Number:
         return np.clip(start.astype(int), 0, max(self.poses - 2, 0))

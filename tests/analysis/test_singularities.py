@@ -174,7 +174,8 @@ def test_limit_positions_are_those_of_circuits() -> None:
     """Circuits follow closed forms of groups along the driver, singular poses are zeros of the whole Jacobian."""
     mechanism = ck.load("stephenson-iii-driven-at-rocker")
     motion = ck.solve(mechanism, np.linspace(-np.pi, np.pi, 181))
-    own = sorted(one.drivers[mechanism.drives[0].name] for one in singular_poses(motion).of_kind("limit position"))
+    limits = (one for one in singular_poses(motion).found if one.kind == "limit position")
+    own = sorted(one.drivers[mechanism.drives[0].name] for one in limits)
     known = np.array([limit.value for limit in ck.circuits(mechanism).limits])
     for value in own:
         assert np.min(np.abs(np.angle(np.exp(1j * (known - value))))) < 1e-9

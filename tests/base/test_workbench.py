@@ -18,7 +18,6 @@ from compoundkin.base.continuation import (
     StepLengths,
     StepResult,
     correct_in_hyperplane,
-    runge_kutta,
     tangent,
     trace_paths,
 )
@@ -170,14 +169,6 @@ def test_dead_paths_are_never_stepped() -> None:
 
     arrived = trace_paths(step, np.array([False, True]), StepLengths(0.1, 0.1, 0.0, 1, 5))
     assert arrived.tolist() == [False, True]
-
-
-def test_the_predictor_is_of_fourth_order() -> None:
-    errors = []
-    for h in (0.1, 0.05):
-        found = runge_kutta(lambda x, t: np.cos(t)[:, None] * x, np.ones((1, 1)), np.ones(1), np.array([h]))
-        errors.append(abs(found[0, 0] - np.exp(np.sin(1.0 + h) - np.sin(1.0))))
-    assert 25.0 < errors[0] / errors[1] < 40.0
 
 
 def test_a_path_is_corrected_across_its_tangent() -> None:

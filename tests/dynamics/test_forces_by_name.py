@@ -371,12 +371,10 @@ def test_strands_of_a_belt() -> None:
     chain = ck.force_analysis(ck.solve(mechanism, {"motor": [0.0, 1.0]}))
     one, two = chain.pairs["belt"].strands
     assert np.allclose(np.sort([one[0], two[0]]), [0.0, 30.0 / 0.15])
-    assert not chain.pairs["belt"].is_slack.any()
     tight = ck.force_analysis(ck.solve(mechanism.replace(ck.pretension("belt", 150.0)), {"motor": [0.0]}))
     assert np.allclose(np.sort(np.ravel(tight.pairs["belt"].strands)), [50.0, 250.0])
     slack = ck.force_analysis(ck.solve(mechanism.replace(ck.pretension("belt", 80.0)), {"motor": [0.0]}))
     assert np.allclose(np.sort(np.ravel(slack.pairs["belt"].strands)), [-20.0, 180.0])
-    assert slack.pairs["belt"].is_slack.all()
 
 
 ENTRY = reference("disc_cam_contact_force", "forces")

@@ -251,7 +251,7 @@ def test_a_toggle_is_snapped_through_by_its_spring() -> None:
     mechanism = slider_crank(ck.spring("piston", "B", to="frame", at="O", stiffness=1e4, free_length=free))
     found = ck.figures.equilibria(mechanism, {"crank": np.linspace(-1.0, 2.0 * np.pi - 1.0, 50)})
     np.testing.assert_allclose([one.values["crank"] for one in found], [-0.7, 0.0, 0.7, np.pi], atol=1e-12)
-    assert [one.is_stable for one in found] == [True, False, True, False]
+    assert [one.stability == "stable" for one in found] == [True, False, True, False]
     slope = -0.05 * np.sin(0.7) - 0.05**2 * np.sin(0.7) * np.cos(0.7) / np.sqrt(0.2**2 - (0.05 * np.sin(0.7)) ** 2)
     np.testing.assert_allclose(found[0].stiffness, 1e4 * slope**2, rtol=1e-10)
 

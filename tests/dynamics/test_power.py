@@ -88,7 +88,8 @@ def test_an_engine_held_by_its_pairs(name: str) -> None:
     for link in ("crank", "rod", "piston"):
         assert np.max(np.abs(held.on(link).force[~rest])) < 1e-9
         assert np.max(np.abs(held.on(link).moment_about((0, 0))[~rest])) < 1e-9
-    assert [one.name for one in held.on("crank" if name == "O" else "piston").of_kind("driver")][-1] == name
+    entries = held.on("crank" if name == "O" else "piston").entries
+    assert [one.name for one in entries if one.kind == "driver"][-1] == name
 
 
 def test_a_press_is_held_at_its_ram() -> None:

@@ -216,7 +216,7 @@ def test_forces_are_those_of_the_analysis() -> None:
     sign = 1 if analysed.pairs["O"].pair.members[1] == "crank" else -1
     np.testing.assert_allclose(x + 1j * y, sign * np.ravel(analysed.pairs["O"].force), atol=1e-5 * shown["greatest"])
     load = np.hypot(*np.array(known["force work on slider"]["force"], float)) * shown["greatest"]
-    (own,) = analysed.on("slider").of_kind("force")
+    (own,) = (one for one in analysed.on("slider").entries if one.kind == "force")
     assert load.max() == pytest.approx(np.abs(own.force).max(), rel=1e-5)
     found = reply(text, "forces")
     assert (len(found["pictures"]), "crank" in found["html"]) == (2, True)

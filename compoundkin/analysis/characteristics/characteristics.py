@@ -162,8 +162,8 @@ def characteristics(
         {name: ranges[name] for name in pressures if name in ranges},
         {name: ranges[name] for name in guides if name in ranges},
         advantages(own, 0, chosen, ratios, ranges),
-        dead_points_of_driver(own, 0, figures),
-        tuple(_notes(own, 0, moving)),
+        _dead_points_of_driver(own, figures),
+        tuple(_notes(own, moving)),
     )
 
 
@@ -179,12 +179,12 @@ def _degrees(angle: float) -> float:
     return float(np.rad2deg(angle)) if angle > NOTHING else 0.0
 
 
-def _notes(motion: Motion, design: int, moving: tuple[str, ...]) -> list[str]:
+def _notes(motion: Motion, moving: tuple[str, ...]) -> list[str]:
     """Return the figures that are not defined for a motion, with the reasons."""
     notes = []
     if motion.inputs.poses < 2:
         notes.append("A single pose: strokes, dead points, time ratios, dwells and paths take a motion over several.")
-    missing = int(np.count_nonzero(np.broadcast_to(motion.failed, motion.failed.shape)[design]))
+    missing = int(np.count_nonzero(motion.failed[0]))
     if missing:
         notes.append(f"{missing:,} of {motion.inputs.poses:,} poses cannot be assembled: figures are of what can be,"
                     " time ratios are not defined.")  # fmt: skip
@@ -210,33 +210,30 @@ class DriverDeadPoint:
     place: float
 
 
-def dead_points_of_driver(motion: Motion, design: int, outputs: Iterable[OutputFigures]) -> tuple[DriverDeadPoint, ...]:
+def _dead_points_of_driver(motion: Motion, outputs: Iterable[OutputFigures]) -> tuple[DriverDeadPoint, ...]:
     """Return the dead points of the driver along a motion, in its order."""
     if motion.inputs.poses < 2:
         return ()
     found = driver_dead_points(motion)
-    places = ascending(found.place[found.design == design])
+    places = ascending(found.place)
     if not len(places):
         return ()
-    there = between(motion, design, places, 0)
+    there = between(motion, 0, places, 0)
     # quantities of rates, such as forces, have no limit there
     named = [one.output.coordinate for one in outputs if one.least is not None]
     known = [quantity(there, name) for name in named if derivative_order(name) == 0]
-    at = drivers_at(motion, design, places.tolist())
+    at = drivers_at(motion, 0, places.tolist())
     return tuple(
         DriverDeadPoint(
             at[k],
             {one.name: scalar_quantity(one.name, float(np.ravel(one.values)[k]), one.unit) for one in known},
-            _reason(motion, design, float(place)),
+            _reason(motion, float(place)),
             float(place),
         )
         for k, place in enumerate(places)
     )
 
 
-def _reason(motion: Motion, design: int, place: float) -> str:
+def _reason(motion: Motion, place: float) -> str:
     """Return the reason why poses beside a place cannot be assembled."""
-    axes = motion.shape[:-1]
-    index = tuple(int(i) for i in np.unravel_index(design, axes)) if axes else ()
-    mine = (gap for gap in gaps(motion) if gap.design == index)
-    return next((gap.reason for gap in mine if gap.first - 1 <= place <= gap.last + 1), "")
+    return next((gap.reason for gap in gaps(motion) if gap.first - 1 <= place <= gap.last + 1), "")

@@ -213,11 +213,6 @@ class FourBar:
         return NAMES[self.code]
 
     @property
-    def is_grashof(self) -> bool:
-        """Whether its shortest link turns fully against the others, change points included."""
-        return self.code[:1] in ("G", "S")
-
-    @property
     def turns(self) -> tuple[str, ...]:
         """The links that can turn fully against the base."""
         letters = self.code[1:] if self.code[:1] in ("G", "S") and "X" not in self.code else ""

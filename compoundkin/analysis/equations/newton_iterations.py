@@ -56,11 +56,6 @@ class NewtonIterations(ShortRepr):
     failure: str = ""
 
     @property
-    def converged(self) -> bool:
-        """Whether the corrections fell to rounding."""
-        return not self.failure
-
-    @property
     def values(self) -> Mapping[str, float]:
         """The last estimates, by the keys of the unknowns."""
         return {own.key: float(self.estimates[-1, k]) for k, own in enumerate(self.unknowns)}

@@ -154,11 +154,6 @@ class RateEquations(ShortRepr):
         return tuple(row.name for row in self.system.rows)
 
     @property
-    def is_square(self) -> bool:
-        """Whether there are as many rows as unknowns."""
-        return len(self.system.rows) == len(self.unknowns)
-
-    @property
     def scales(self) -> EquationScales:
         """The divisors that make rows and columns pure numbers."""
         return self.system.scales(self.structure.mechanism.geometry.size)

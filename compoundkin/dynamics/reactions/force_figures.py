@@ -55,7 +55,7 @@ def _effort_unit(forces: ForceResult, name: str) -> str:
     return unit_of_force(forces, "moment" if forces.motion.drives[name].is_angle else "force")
 
 
-def unit_of_force(forces: ForceResult, dimension: Dimension, name: str = "") -> str:
+def unit_of_force(forces: ForceResult, dimension: Dimension) -> str:
     """Return the unit of forces, moments or powers. Numbers have none."""
     units = forces.units
     return {"force": units.force, "moment": units.moment, "power": units.power, "length": units.length}.get(

@@ -61,10 +61,6 @@ class LinkForces(Sequence[LinkWrench]):
     def __len__(self) -> int:
         return len(self.entries)
 
-    def of_kind(self, *kinds: str) -> tuple[LinkWrench, ...]:
-        """Return the wrenches of some kinds, such as "pair" or "weight"."""
-        return tuple(one for one in self.entries if one.kind in kinds)
-
     @property
     def sum(self) -> Wrench:
         """The sum of all, about the world's origin, (designs, poses)."""

@@ -123,12 +123,6 @@ class ForceComponents(ShortRepr):
         """The pulls of a belt's first and second strand. One that is negative is slack: a belt does not push."""
         return self.part(FIRST_PULL), self.part(SECOND_PULL)
 
-    @property
-    def is_slack(self) -> Number:
-        """At which poses a strand of the belt is slack."""
-        one, two = self.strands
-        return np.asarray(np.minimum(one, two) < -ROUNDING * np.maximum(np.abs(one), np.abs(two)))
-
     def contacts(self, length: Any = None) -> GuideContacts:
         """Return the forces at both ends of a guide of a `length`.
 

@@ -28,9 +28,9 @@ SAFETY, LEAST, MOST, ORDER = 0.9, 0.2, 10.0, 8.0
 STAGES, ALL_STAGES, BETWEEN = 12, 16, 7
 
 
-def _sum(row: Sequence[float], letter: str, first: int = 0) -> str:
+def _sum(row: Sequence[float], letter: str) -> str:
     """Return a sum of stages as source text, without those of no weight."""
-    return " + ".join(f"{c!r} * {letter}{k + first}" for k, c in enumerate(row) if c) or "0.0"
+    return " + ".join(f"{c!r} * {letter}{k}" for k, c in enumerate(row) if c) or "0.0"
 
 
 @cache

@@ -301,11 +301,11 @@ def _direct(drawing: Drawing, letters: DrawnLetters) -> None:
             letters.directed(guide.on, along, AXIS)
         if guide.kind == "slide" and guide.link != FRAME and often[guide.link] > 1:
             letters.directed(guide.link, along, AXIS)
-    for one in _wheels(drawing, letters):
+    for one in _wheels(drawing):
         letters.directed(one, complex(letters.size), AXIS)
 
 
-def _wheels(drawing: Drawing, letters: DrawnLetters) -> Iterator[str]:
+def _wheels(drawing: Drawing) -> Iterator[str]:
     for gear_ in drawing.gears:
         yield from (link for link in (gear_.first, gear_.second, gear_.carrier) if link != FRAME)
     for line in drawing.racks:

@@ -40,7 +40,7 @@ def pylinkage_text(drawing: Drawing, steps: int) -> tuple[str, tuple[str, ...]]:
     ids = _Ids(drawing)
     data = {
         "name": drawing.title,
-        "joints": [_joint(layout, point.key, ids) for point in drawing.points],
+        "joints": [_joint(layout, point.key) for point in drawing.points],
         "links": [{"id": ids.ground, "type": "ground", "joints": [k for k in layout.of if layout.on_frame(k)]}]
         + [_link_entry(layout, entry, ids.of(entry), step) for entry in entries],
         "ground": ids.ground,
@@ -77,7 +77,7 @@ class _Ids:
         return name
 
 
-def _joint(layout: PylinkageLayout, key: str, ids: _Ids) -> dict[str, Any]:
+def _joint(layout: PylinkageLayout, key: str) -> dict[str, Any]:
     place = layout.places[key]
     found: dict[str, Any] = {"id": key, "type": "revolute", PLACE: [place.real, place.imag]}
     if layout.on_frame(key):

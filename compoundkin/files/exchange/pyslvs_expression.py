@@ -100,7 +100,7 @@ def _joint(words: ExpressionWords, found: PyslvsExpression, problems: Problems) 
         problems.add(where, f"no joint type {word}", "there are R, P and RP")
     own = _ExpressionFields()
     while words.more():
-        _field(words, own, found, where, problems)
+        _field(words, own, found)
     words.take("]")
     if own.at is None:
         problems.add(where, "a joint needs a place P[x, y]")
@@ -119,9 +119,7 @@ def _joint(words: ExpressionWords, found: PyslvsExpression, problems: Problems) 
     return JointRecord(kind or "R", keys, own.at or 0j, angle + pi if backward else angle, where=where)
 
 
-def _field(
-    words: ExpressionWords, own: _ExpressionFields, found: PyslvsExpression, where: str, problems: Problems
-) -> None:
+def _field(words: ExpressionWords, own: _ExpressionFields, found: PyslvsExpression) -> None:
     word = words.take()
     words.take("[")
     if word == "P":

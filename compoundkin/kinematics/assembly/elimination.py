@@ -85,7 +85,7 @@ def _more(
 ) -> Number:
     """Add to the known solutions those of one eigenvalue problem."""
     nearby = loops.changed(random_equations(graph, np.random.default_rng(4)), change) if change else loops
-    candidates = roots(nearby, suppressed, kept, SHIFT)
+    candidates = roots(nearby, suppressed, kept)
     return distinct(np.concatenate([known, polish(loops, candidates)], axis=1))
 
 
@@ -195,18 +195,18 @@ def _bordered(first: Number, rows: Number, chosen: Number) -> Number:
     return np.linalg.det(np.concatenate([head, picked], axis=-2))
 
 
-def roots(loops: RotationEquations, suppressed: int, kept: Number, shift: complex) -> Number:
+def roots(loops: RotationEquations, suppressed: int, kept: Number) -> Number:
     """Find candidates for all solutions, (..., candidates, rotations). They are NaN where an eigenvalue is at infinity.
 
-    `kept` are the sets whose rows are not zero; `shift` is a number near which no solution is expected.
+    `kept` are the sets whose rows are not zero.
     """
     p, q = (m[..., kept[:, None], kept] for m in pencil(loops, suppressed))
     with np.errstate(all="ignore"):
         rows = 1 / (np.abs(p) + np.abs(q)).max(axis=-1, keepdims=True)
         p, q = p * rows, q * rows
         columns = 1 / (np.abs(p) + np.abs(q)).max(axis=-2, keepdims=True)
-        values, vectors = np.linalg.eig(_finite((p + shift * q) * columns, q * columns))
-        x = shift - 1 / values
+        values, vectors = np.linalg.eig(_finite((p + SHIFT * q) * columns, q * columns))
+        x = SHIFT - 1 / values
         t = np.swapaxes(vectors * np.swapaxes(columns, -1, -2), -1, -2)
         return np.insert(_read(t, loops.count, kept), suppressed, x, axis=-1)
 

@@ -271,11 +271,11 @@ def _by_law(motion: Motion, law: Any, designs: Number, times: Number, order: int
     table[:, -1] = rows[:, -1]
     table[designs, index] = times
     moved = law.coordinate(table.reshape(*motion.shape[:-1], -1), order)
-    return tuple(np.broadcast_to(_fitted(moved.derivative(k), table), table.shape)[designs, index][:, None]
+    return tuple(np.broadcast_to(_fitted(moved.derivative(k)), table.shape)[designs, index][:, None]
                  for k in range(RATES))  # fmt: skip
 
 
-def _fitted(value: Number, table: Number) -> Number:
+def _fitted(value: Number) -> Number:
     return value if np.size(value) == 1 else np.reshape(value, (-1, np.shape(value)[-1])) if np.ndim(value) else value
 
 

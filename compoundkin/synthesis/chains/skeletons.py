@@ -67,7 +67,7 @@ def mechanism_from(chain: Chain, frame: int = 0, *drivers: Driver, title: str = 
     items.append(drawn(**places))
     title = title or chain_name(chain, frame) or f"{chain.links}-link mechanism"
     if drivers:
-        driven = [_drive(items, names, *_between(chain, frame, driver)) for driver in drivers]
+        driven = [_drive(items, names, *_between(frame, driver)) for driver in drivers]
         return Mechanism(title, *items, *driven)
     for chosen in combinations(sorted(pins, key=lambda pair: frame not in pair), max(chain.mobility, 0)):
         driven = [_drive(items, names, *(pair if pair[0] == frame else pair[::-1])) for pair in chosen]
@@ -88,16 +88,16 @@ def lettered(number: int) -> list[str]:
     return [f"{letter}{turn}" for turn in rounds for letter in ascii_uppercase][:number]
 
 
-def _between(chain: Chain, frame: int, driver: Driver) -> tuple[int, int]:
+def _between(frame: int, driver: Driver) -> tuple[int, int]:
     return (frame, driver) if isinstance(driver, int) else driver
 
 
 def _known(chain: Chain, frame: int, drivers: Sequence[Driver]) -> None:
-    for number in (frame, *(k for driver in drivers for k in _between(chain, frame, driver))):
+    for number in (frame, *(k for driver in drivers for k in _between(frame, driver))):
         if not 0 <= number < chain.links:
             raise UnknownName(Problem(f"link {number}", "the chain has no such link", f"known: 0 to {chain.links - 1}"))
     for driver in drivers:
-        pair = _between(chain, frame, driver)
+        pair = _between(frame, driver)
         if tuple(sorted(pair)) not in chain.pairs:
             near = ", ".join(map(str, chain.neighbours[pair[0]]))
             what = f"links {pair[0]} and {pair[1]} are not joined, so that no driver can be between them"

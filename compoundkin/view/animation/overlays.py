@@ -242,7 +242,7 @@ def _name_of_arrow(
     offered += [clear(way * part, e * side) for part in BESIDE_PARTS for side in (1j, -1j)]
     shown = length >= NAMED
     places = _clear_places([np.where(shown, place, np.nan) for place in offered], half, taken)
-    return MovingMark(force_name("", one.shown.name, 0j, one.shown.kind), places, shown)
+    return MovingMark(force_name(one.shown.name, 0j, one.shown.kind), places, shown)
 
 
 def _moment_marks(sketch: MovingSketch, one: ForceCourse, named: bool) -> Iterator[MovingMark]:
@@ -259,7 +259,7 @@ def _moment_marks(sketch: MovingSketch, one: ForceCourse, named: bool) -> Iterat
             yield MovingMark(tuple(leaves(arc)), places, shown)
     if named:
         beside = 1j * (radius + text_half(one.shown.turning, SMALL).imag + 3.0)
-        yield MovingMark(force_name("", one.shown.turning, beside, one.shown.kind), places, large)
+        yield MovingMark(force_name(one.shown.turning, beside, one.shown.kind), places, large)
 
 
 def _arrows(sketch: MovingSketch, scale: VectorScale, courses: tuple[ForceCourse, ...]) -> Arrows:

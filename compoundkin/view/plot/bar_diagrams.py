@@ -71,7 +71,7 @@ def bar_diagrams(
         labels: list[PointLabel] = []
         for k, name in enumerate(names):
             _draw_bar(axes[k :: len(names)], name, found.bars[name], design, pose, labels)
-        _draw_legend(figure, axes[0], motion.inputs.poses)
+        _draw_legend(figure, motion.inputs.poses)
         figure.align_ylabels(axes)
         return canvas.finished(figure, labels)
 
@@ -127,7 +127,7 @@ def _mark_letters(axes: Any, bar: BarForces, design: int) -> None:
         axes.text(place, 1.0, letter, transform=axes.get_xaxis_transform(), **where)
 
 
-def _draw_legend(figure: Any, axes: Any, poses: int) -> None:
+def _draw_legend(figure: Any, poses: int) -> None:
     """Draw what fill and line mean below the plot."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch

@@ -89,7 +89,7 @@ def circuits_report(found: Circuits) -> Report:
     return Report(found.structure.mechanism.title, sections, NOT_SOLVED, found.structure)
 
 
-def assembly_sections(motion: Motion, design: int) -> tuple[Section, ...]:
+def assembly_sections(motion: Motion) -> tuple[Section, ...]:
     """Return the sections on circuits and limits of one design, where they are computed quickly.
 
     With several drivers the first one moves, the others keep their first values.
@@ -101,16 +101,16 @@ def assembly_sections(motion: Motion, design: int) -> tuple[Section, ...]:
     first = {name: float(first_entry(values[0])) for name, values in motion.inputs.drives.items()}
     others = {name: value for name, value in first.items() if name != drives[0].name}
     try:
-        found = circuits(structure, drives[0].name, others, design=design)
+        found = circuits(structure, drives[0].name, others)
     except CompoundkinError:
         return ()
-    page = _CircuitSections(replace(found, start=_start_on_circuits(found, motion, design)))
+    page = _CircuitSections(replace(found, start=_start_on_circuits(found, motion)))
     return page.circuits(), *page.limits()
 
 
-def _start_on_circuits(found: Circuits, motion: Motion, design: int) -> CircuitPlace | None:
+def _start_on_circuits(found: Circuits, motion: Motion) -> CircuitPlace | None:
     """Return where on the circuits the motion begins, in the modes in which it was solved."""
-    first = first_configuration(motion, design)
+    first = first_configuration(motion, 0)
     try:
         return None if first is None else found.at(first)
     except InvalidInput:

@@ -120,7 +120,7 @@ def _sheet_blocks(known: ForceSheet) -> Iterator[Block]:
     yield TableBlock((Column("no.", style="each"), Column("link"), Column("forces and moments", style="each")), rows)
 
 
-def force_checks_sections(sample: Sample, forces: Forces | None) -> tuple[Section, ...]:
+def force_checks_sections(forces: Forces | None) -> tuple[Section, ...]:
     """Return the findings about forces as a section; none without forces."""
     if forces is None:
         return ()

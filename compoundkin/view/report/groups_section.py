@@ -102,14 +102,14 @@ def _in_motion_shape(sample: Sample, value: Any) -> Any:
     return np.broadcast_to(value, (inputs.designs, inputs.poses)).reshape(inputs.shape)
 
 
-def solving_section(structure: Structure, motion: Motion | None, design: int = 0) -> Section:
+def solving_section(structure: Structure, motion: Motion | None) -> Section:
     """Report the frame with its driven links, then every group."""
     known = _letters(structure, structure.ground.links)
     steps = [_ground_step(structure, structure.ground, known)]
     for k, group in enumerate(structure.groups):
         new = [letter for letter in _letters(structure, group.links) if letter not in known]
         known.update(dict.fromkeys(new))
-        mode = _mode_facts(motion, k, design) if motion else ()
+        mode = _mode_facts(motion, k) if motion else ()
         steps.append(StepBlock(f"{k + 1}  {_title(group)}", (*_group_facts(structure, group, new), *mode)))
     blocks: tuple[Block, ...] = Paragraph(_summary(structure)), *_redundant_paragraphs(structure), *steps
     return Section("groups", "Groups in solving order", blocks)
@@ -191,7 +191,7 @@ def _yield_text(links: Iterable[str], letters: Iterable[str]) -> str:
     return f"{', '.join(links)}{points}"
 
 
-def _mode_facts(motion: Motion, k: int, design: int) -> Iterator[tuple[str, str]]:
+def _mode_facts(motion: Motion, k: int) -> Iterator[tuple[str, str]]:
     """Yield the assembly mode of a group, its meaning, and what chose it."""
     why = CHOSEN_BY.get(motion.chosen_by.get(k, ""), "")
     solver = motion.solving_order.solvers[k]
@@ -200,16 +200,16 @@ def _mode_facts(motion: Motion, k: int, design: int) -> Iterator[tuple[str, str]
     elif solver.modes == 1:
         yield "mode", "the only one"
     else:
-        sign = motion.sign(k, design)
+        sign = motion.sign(k, 0)
         meaning = solver.sign_means if sign > 0 else f"the other one; in +1, {solver.sign_means}"
-        yield "mode", f"{sign:+d}, {why} ({meaning}){_change_points_text(motion, k, design)}"
+        yield "mode", f"{sign:+d}, {why} ({meaning}){_change_points_text(motion, k)}"
 
 
-def _change_points_text(motion: Motion, k: int, design: int) -> str:
+def _change_points_text(motion: Motion, k: int) -> str:
     places = motion.change_points.get(k)
     if places is None:
         return ""
     # a motion that returns from a change point as it came is there twice
-    _, times = np.unique(places[design][np.isfinite(places[design])], return_counts=True)
+    _, times = np.unique(places[0][np.isfinite(places[0])], return_counts=True)
     count = int(np.count_nonzero(times % 2))
     return f"; it changes at {counted(count, 'change point')}" if count else ""

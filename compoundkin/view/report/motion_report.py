@@ -73,7 +73,7 @@ def report_of_motion(motion: Motion, outputs: Sequence[str] = (), note: str = ""
         solving_section(structure, motion),
         drivers_section(structure, sample),
         *([equivalent] if (equivalent := equivalent_section(sample)) else []),
-        *assembly_sections(motion, 0),
+        *assembly_sections(motion),
         *moving,
         performance_section(sample, figures, chosen, bool(outputs or motion.mechanism.outputs)),
         *_force_sections(forces),
@@ -160,7 +160,7 @@ def check_report(motion: Motion) -> Report:
     if forces is not None:
         from compoundkin.view.report.forces_section import force_checks_sections
 
-        of_forces = force_checks_sections(sample, forces)
+        of_forces = force_checks_sections(forces)
     if touching is not None:
         from compoundkin.view.report.interference_section import touch_sentences
 

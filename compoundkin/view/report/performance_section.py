@@ -129,7 +129,7 @@ def _dead_points(sample: Sample, found: Characteristics) -> Iterator[Block]:
         (one.name, display_unit(point.value), optional_value(point.value), place_of(point)) for one, point in points
     ]
     if rows:
-        columns = Column("dead point of"), Column("unit"), Column("value", style="each"), place_column(sample, "at")
+        columns = Column("dead point of"), Column("unit"), Column("value", style="each"), place_column(sample)
         figures = tuple((DEAD, *one.output.names[:2]) for one, _ in points)
         yield TableBlock(columns, tuple(rows), figures=figures)
     for limit in found.dead_points:
@@ -210,7 +210,7 @@ def ranges_blocks(sample: Sample, found: Characteristics, reported: Sequence[str
         figures.append((ADVANTAGE, rates.get(ratio.owner, "")))
     if not rows:
         return
-    at = place_column(sample, "at")
+    at = place_column(sample)
     ends = Column("least", style="each"), at, Column("greatest", style="each"), at
     yield TableBlock((Column("quantity"), Column("unit"), *ends), tuple(rows), keys=1, figures=tuple(figures))
 
@@ -253,11 +253,11 @@ def _range_row(name: str, one: Range) -> tuple[Cell, ...]:
     return name, display_unit(least.value), low, place_of(least), high, place_of(greatest)
 
 
-def place_column(sample: Sample, word: str) -> Column:
+def place_column(sample: Sample) -> Column:
     """Return the column of places: times, values of the driver, or numbers of poses."""
     place, values = sample.places
     floor = NEARLY * float(np.max(np.abs(values), initial=0.0))
-    return Column(f"{word} {place.name}", place.unit, "each", floor, follows=True)
+    return Column(f"at {place.name}", place.unit, "each", floor, follows=True)
 
 
 def place_of(figure: PlacedFigure) -> float:

@@ -47,11 +47,11 @@ _LOWER = 2
 MOST_LOOPS = 20
 
 
-def links_section(structure: Structure, design: int = 0) -> Section:
+def links_section(structure: Structure) -> Section:
     """Return the section on links: kind by the number of pairs, points in the link's own frame, pairs."""
     itself = without_leads(structure)
     pairs, placed = _pairs_by_link(structure), not structure.mechanism.unplaced
-    points = _point_places(structure, design) if placed else _point_letters(structure)
+    points = _point_places(structure) if placed else _point_letters(structure)
     rows = tuple(
         (name, kind_of_link(count), points[name], ", ".join(pairs[name])) for name, count in pair_counts(itself).items()
     )
@@ -102,21 +102,20 @@ def _point_letters(structure: Structure) -> dict[str, str]:
     return {name: ", ".join(item.letters) for name, item in structure.mechanism.links.items()}
 
 
-def _point_places(structure: Structure, design: int) -> dict[str, str]:
+def _point_places(structure: Structure) -> dict[str, str]:
     """Return the points of every link with their coordinates."""
     geometry = structure.mechanism.geometry
     floor = ROUNDING * geometry.size
     return {
-        link: "  ".join(f"{name} {_point_text(p, floor, design)}" for name, p in points.items())
+        link: "  ".join(f"{name} {_point_text(p, floor)}" for name, p in points.items())
         for link, points in geometry.points.items()
     }
 
 
-def _point_text(point: Number, floor: float, design: int) -> str:
+def _point_text(point: Number, floor: float) -> str:
     """Return a point as (x, y), at the first pose where it changes."""
     if np.ndim(point):
-        rows = np.asarray(point).reshape(-1, np.shape(point)[-1])
-        point = rows[min(design, len(rows) - 1), 0]
+        point = np.ravel(point)[0]
     x, y = (0.0 if abs(v) <= floor else float(v) for v in (point.real, point.imag))
     return f"({number_text(x)}, {number_text(y)})"
 
@@ -175,9 +174,9 @@ def faults_section(structure: Structure) -> Section:
     return Section("faults", "What stands in the way", (Paragraph("The mechanism cannot be solved as it is."), *alerts))
 
 
-def counted_sections(structure: Structure, design: int = 0, motion: Motion | None = None) -> tuple[Section, ...]:
+def counted_sections(structure: Structure, motion: Motion | None = None) -> tuple[Section, ...]:
     """Return the sections on links, pairs, mobility, chain and loops."""
-    parts = links_section(structure, design), pairs_section(structure), mobility_section(structure, motion)
+    parts = links_section(structure), pairs_section(structure), mobility_section(structure, motion)
     return (*parts, chain_section(without_leads(structure)), loops_section(structure))
 
 
@@ -283,7 +282,7 @@ def _chain_facts(structure: Structure, name: ChainName) -> Iterator[tuple[str, s
             f"{'; '.join(name.parts)}"
             + (f"; joined at {', '.join(name.fractionated_at)}" if name.fractionated_at else ""),
         )
-    yield from _symmetry(structure, name)
+    yield from _symmetry(name)
     yield from _group_trusses(structure)
     if name.mobility < 1 and not name.title.startswith("wedge"):
         yield "by count", "rigid: if it moves, its dimensions are special or slides alone close a loop"
@@ -300,7 +299,7 @@ def _variety(degree: int) -> str:
     return ": no driver can be without effect on a loop" if degree == 0 else ""
 
 
-def _symmetry(structure: Structure, name: ChainName) -> Iterator[tuple[str, str]]:
+def _symmetry(name: ChainName) -> Iterator[tuple[str, str]]:
     if not name.symmetries:
         yield "symmetry", f"not computed for more than {MOST_COMPARED} links"
         return

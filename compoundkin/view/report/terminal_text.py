@@ -91,7 +91,7 @@ def _table(block: TableBlock, width: int) -> Iterator[RenderableType]:
         if number:
             yield Text("")
         parts = [block.columns[k] for k in panel], [heads[k] for k in panel], [cells[k] for k in panel]
-        yield _lines(*parts) if _is_plain(*parts, width) else _grid(*parts)
+        yield _lines(*parts) if _is_plain(*parts[1:], width) else _grid(*parts)
 
 
 def _panels(block: TableBlock, heads: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> list[list[int]]:
@@ -121,7 +121,7 @@ def _width(texts: Iterable[str]) -> int:
     return max(len(line) for text in texts for line in text.split("\n"))
 
 
-def _is_plain(columns: Sequence[Column], heads: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> bool:
+def _is_plain(heads: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> bool:
     """Return whether no cell is to be wrapped or coloured, so that cells need not be measured one by one."""
     wide = sum(_width((head, *column)) + GAP for head, column in zip(heads, cells, strict=True)) - GAP
     texts = [cell for column in cells for cell in column]

@@ -64,7 +64,7 @@ def visible_centres(scene: Scene, window: Window) -> VisibleCentres:
             far.append(name)
     notes = [f"at infinity: {', '.join(infinite)}"] if infinite else []
     notes += [f"outside: {', '.join(far)}"] if far else []
-    return VisibleCentres(near, tuple(_lines(scene, window, centres, near)), notes)
+    return VisibleCentres(near, tuple(_lines(scene, centres, near)), notes)
 
 
 def centre_places(scene: Scene) -> list[complex]:
@@ -90,9 +90,7 @@ def _at(scene: Scene, values: Number) -> Number:
     return np.asarray(full.reshape(inputs.designs, inputs.poses, *rest)[scene.pose])
 
 
-def _lines(
-    scene: Scene, window: Window, centres: Centres, near: dict[str, complex]
-) -> Iterator[tuple[complex, complex]]:
+def _lines(scene: Scene, centres: Centres, near: dict[str, complex]) -> Iterator[tuple[complex, complex]]:
     """For each secondary centre on the picture, from it to the known centres on the two lines that give it."""
     # a step names centres by their links: (crank frame)
     names = {f"({a} {b})": centre_number(scene, a, b) for one, two in centres for a, b in ((one, two), (two, one))}

@@ -185,7 +185,7 @@ def _covered(middle: complex, way: complex) -> float:
     return max(0.0, 1.0 - abs(float(np.angle(way * np.conjugate(middle)))) / (0.5 * SWEEP + ARC_ROOM))
 
 
-def force_name(key: str, text: str, at: complex, kind: str) -> tuple[Shape, ...]:
+def force_name(text: str, at: complex, kind: str) -> tuple[Shape, ...]:
     """Return the name of a force, readable on lines."""
     return Text(at, text, f"halo {kind}-name"), Text(at, text, f"{kind}-name")
 

@@ -127,12 +127,8 @@ def force_sketch(forces: Forces, options: PictureOptions) -> Picture:
     behind = [one.shape for one in laid]
     found = placed([*own, *labels], [*behind, *shapes], window.width, window.height)
     texts = [*label_shapes(scene, {label.key: found[label.key] for label in own})]
-    texts += [
-        part for label, text, kind in names if kinds for part in force_name(label.key, text, found[label.key], kind)
-    ]
-    return picture_with_notes(
-        known, window, [*behind, *shapes, *texts], scale, shown, "forces", options.size, options.link
-    )
+    texts += [part for label, text, kind in names if kinds for part in force_name(text, found[label.key], kind)]
+    return picture_with_notes(known, window, [*behind, *shapes, *texts], scale, shown, options.size, options.link)
 
 
 def _with_room(known: ForcesAtPose, window: Window, shown: Sequence[ActingForce], scale: VectorScale | None) -> Window:
@@ -177,7 +173,6 @@ def picture_with_notes(
     shapes: Sequence[Shape],
     scale: VectorScale | None,
     shown: Sequence[ActingForce],
-    what: str,
     size: float | None,
     link: str | None = None,
 ) -> Picture:
@@ -193,7 +188,7 @@ def picture_with_notes(
     small = [one for one in every if one.force and one.name not in drawn] if scale is not None else []
     texts, height = notes_below(known, shown, scale, window.width, window.height, small)
     paper = sheet(window.width, height)
-    title = f"{scene.mechanism.title}: {what}"
+    title = f"{scene.mechanism.title}: forces"
     description = "; ".join(f"{one.description} {abs(one.force):.4g}" for one in shown if one.force)
     return Picture((paper, *shapes, *texts), window.width, height, title, description, checked_size(size), window)
 
@@ -302,7 +297,7 @@ def _polygon_panel(
     every = [label.moved(-low) for label in labels]
     found = placed(every, shapes, wide, tall)
     names = [part for label, (text, kind) in zip(every, texts, strict=True)
-             for part in force_name(label.key, text, found[label.key], kind)]  # fmt: skip
+             for part in force_name(text, found[label.key], kind)]  # fmt: skip
     foot = complex((wide - ruler) / 2.0 - SIDE, tall + BELOW / 2.0)
     line = [*arrow_shapes(foot, foot + ruler, "drive"), Text(foot + ruler + 0.5 * SIDE, scale.text, "note", "start")]
     return headed_part(title, [*shapes, *names, *line], wide, tall + BELOW + LINE, (link,))
@@ -476,5 +471,5 @@ def _body_panel(
     shapes = moved_shapes(shapes, -low)
     found = placed([label.moved(-low) for label in (*own, *(label for label, _, _ in names))], shapes, wide, tall)
     texts = label_shapes(scene, {label.key: found[label.key] for label in own})
-    texts += [part for label, text, kind in names for part in force_name(label.key, text, found[label.key], kind)]
+    texts += [part for label, text, kind in names for part in force_name(text, found[label.key], kind)]
     return headed_part(title, [*shapes, *texts], wide, tall, (link,))

@@ -303,9 +303,9 @@ def link_body(scene: Scene, window: Window, link: str, extra: Places = ()) -> tu
     return (Polygon(corners, style_of("plate", group), among),)
 
 
-def skeleton(scene: Scene, window: Window, link: str, extra: Places = ()) -> list[complex]:
+def skeleton(scene: Scene, window: Window, link: str) -> list[complex]:
     """Return the points between which a link is drawn. The ends of a bar, or the corners of a plate."""
-    return link_corners([*_own(scene, window, link), *extra])
+    return link_corners([*_own(scene, window, link)])
 
 
 def _own(scene: Scene, window: Window, link: str) -> list[complex]:

@@ -138,7 +138,7 @@ def _of_link(painter: Painter, name: str) -> Iterator[Dimension]:
             if any(abs(ray - one) < PARALLEL for one in rays):
                 continue
             rays.append(ray)
-            yield from angle_dimension(painter, painter.place(name, first), *(
+            yield from angle_dimension(painter.place(name, first), *(
                 painter.place(name, p) for p in (second, other)))  # fmt: skip
 
 
@@ -151,10 +151,10 @@ def _side(painter: Painter, name: str, p: complex, q: complex, sides: Sequence[t
 
 
 def length_dimension(
-    painter: Painter, a: complex, b: complex, length: float, shapes: tuple[Shape, ...] = (), sign: str = ""
+    painter: Painter, a: complex, b: complex, length: float, shapes: tuple[Shape, ...] = ()
 ) -> Dimension:
     """Return the dimension of a length. Its number is along the line from place to place."""
-    text = f"{sign}{number_text(length, painter.scene.mechanism.unit)}"
+    text = number_text(length, painter.scene.mechanism.unit)
     e, across = upright(b - a), 1j * upright(b - a)
     places = []
     beyond = max(0.0, text_width(text) - abs(b - a))
@@ -170,7 +170,7 @@ def length_dimension(
     return Dimension(text, tuple(places), beyond > 0.0, tuple(_led(text, ways, shapes)))
 
 
-def angle_dimension(painter: Painter, at: complex, one: complex, other: complex) -> Iterator[Dimension]:
+def angle_dimension(at: complex, one: complex, other: complex) -> Iterator[Dimension]:
     """Return the dimension of the angle between two directions from a place. None where they are parallel."""
     first, second = unit_direction(one - at), unit_direction(other - at)
     angle = float(np.angle(second * np.conjugate(first)))
@@ -236,7 +236,7 @@ def _of_guide(painter: Painter, seen: PairMark, mark: Sliding) -> Iterator[Dimen
     if others:
         at, other = painter.place(link, mark.at), painter.place(link, others[0])
         way = at + painter.along(link, along) * abs(other - at)
-        yield from angle_dimension(painter, at, other, way)
+        yield from angle_dimension(at, other, way)
 
 
 def _radius(painter: Painter, link: str, middle: complex, radius: float) -> Dimension:
@@ -415,7 +415,7 @@ def _inclination(painter: Painter, mark: Sliding) -> list[Dimension]:
     high = high if abs(high - low) > LEVEL else low + LEVEL * painter.along(FRAME, mark.along)
     level = low + LEVEL * np.sign(high.real - low.real)
     ray = Polyline((low, level), "extension")
-    angles = angle_dimension(painter, low, level, high)
+    angles = angle_dimension(low, level, high)
     return [Dimension(one.text, tuple(p._replace(shapes=(ray, *p.shapes)) for p in one.places)) for one in angles]
 
 

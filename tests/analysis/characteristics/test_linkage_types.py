@@ -38,9 +38,6 @@ def test_change_points_are_named_by_the_shortest_link_or_by_equal_ones() -> None
     assert four_bar_code([3, 1, 2], [1, 1, 2], [3, 3, 2], [1, 3, 2]).tolist() == ["S2X", "S2X", "S3X"]
     names = [FourBar(("a", "b", "c", "d"), ("A", "B", "C", "D"), lengths, "S2X", "").name
              for lengths in ((3.0, 1.0, 3.0, 1.0), (1.0, 1.0, 3.0, 3.0))]  # fmt: skip
-    shares = [FourBar(("a", "b", "c", "d"), ("A", "B", "C", "D"), (1.0,) * 4, code, "").is_grashof
-              for code in ("GCRR", "S2X", "RRR1", "")]  # fmt: skip
-    assert shares == [True, True, False, False]
     assert names == ["parallelogram (or antiparallelogram)", "kite (deltoid)"]
     with pytest.raises(ck.errors.InvalidInput, match="the length of a link of a four-bar is positive"):
         four_bar_code(1, 0, 1, 1)

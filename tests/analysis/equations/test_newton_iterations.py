@@ -30,7 +30,7 @@ def test_a_published_table() -> None:
     ]
     assert np.allclose(found.estimates[:5], published, rtol=1e-13)
     assert np.allclose(np.abs(found.residuals[0]), [6.71572875253810, 2.30350913392874], rtol=1e-13)
-    assert found.converged
+    assert not found.failure
     assert np.degrees(found.estimates[-1]) == pytest.approx([46.5674634422102, 75.5224878140701], abs=1e-11)
     assert found.estimates[1] - found.estimates[0] == pytest.approx(found.corrections[0])
 
@@ -46,7 +46,7 @@ def test_it_converges_by_squares_to_the_pose_of_the_groups(name: str) -> None:
     first = {drive.name: float(np.ravel(motion.drives[drive.name].value)[0]) for drive in mechanism.drives}
     solved = pose_values(motion)
     found = newton(mechanism, first)
-    assert found.converged
+    assert not found.failure
     for own in found.unknowns:
         value, scale = float(np.ravel(solved[own.key])[0]), motion.size if own.is_length else 1.0
         gap = found.values[own.key] - value
@@ -61,7 +61,6 @@ def test_a_pose_out_of_reach_is_said() -> None:
     bars = ck.link("frame", A=0, D=4), ck.link("crank", A=0, B=3), ck.link("rod", B=0, C=2), ck.link("arm", C=0, D=2.5)
     mechanism = ck.Mechanism("m", *bars, ck.drive("crank", values=0.5))
     found = newton(mechanism, {"crank": 3.0})
-    assert not found.converged
     assert "20 steps" in found.failure or "singular" in found.failure
     assert np.isfinite(found.estimates).all()
 

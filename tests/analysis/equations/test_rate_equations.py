@@ -44,7 +44,7 @@ def test_solutions_are_the_rates_that_the_groups_give(name: str) -> None:
             if value is not None:
                 gap = np.abs(found.rate(own.key) - value) / (size if own.is_length else 1.0)
                 assert np.max(np.where(good, gap / scale, 0.0)) < CLOSE, own.key
-    if equations.velocity.is_square:
+    if len(equations.velocity.rows) == len(equations.velocity.unknowns):
         assert equations.velocity.at(motion).determinant.shape == motion.shape
 
 
