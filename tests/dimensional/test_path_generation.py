@@ -93,7 +93,7 @@ def test_both_equations_give_one_orientation() -> None:
     np.testing.assert_allclose(orientations(numbers, start.d, start.e), unknowns[4:], rtol=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_five_points_and_both_pivots(seed: int) -> None:
     a, b, points, _ = planted(5, seed)
     answer = ck.synthesise(ck.tasks.points(points), ground=[a, b])
@@ -134,9 +134,9 @@ def test_nine_points_of_wampler_morgan_and_sommese() -> None:
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("count", [2, 3, 4])
-def test_fewer_points_leave_a_family(count: int) -> None:
-    _, _, points, _ = planted(count, 3)
+def test_fewer_points_leave_a_family() -> None:
+    """Two points, of which an arc is made: more would take the rest of the same way."""
+    _, _, points, _ = planted(2, 3)
     answer = ck.synthesise(ck.tasks.points(points))
     assert answer.complete.startswith("some of infinitely many")
     assert "chosen beside the task" in answer.note

@@ -256,18 +256,16 @@ class HeldSpeed:
         """Return the excess of the load's speed over the one at which it jumps."""
         return _speed_of(self.load, chart.state(time, values, speeds)) - self.speed
 
-    def by_speeds(self, chart: DriverChart, time: float, values: Number, speeds: Number) -> Number:
-        """Return the rates of the load's speed by the speeds of the free drivers."""
+    def linear(self, chart: DriverChart, time: float, values: Number, speeds: Number) -> tuple[float, Number]:
+        """Return the excess, and the rates of the load's speed by the speeds of the free drivers."""
         here = self.excess(chart, time, values, speeds)
         steps = self.pace * np.eye(len(speeds))
-        return np.array([self.excess(chart, time, values, speeds + step) - here for step in steps]) / self.pace
+        slopes = np.array([self.excess(chart, time, values, speeds + step) - here for step in steps]) / self.pace
+        return here, slopes
 
     def moved(self, chart: DriverChart, time: float, values: Number, speeds: Number, excess: float) -> Number:
         """Return the speeds of the free drivers at which the load's speed has an excess."""
-        slopes = self.by_speeds(chart, time, values, speeds)
-        off = excess - self.excess(chart, time, values, speeds)
-        found: Number = speeds + off * slopes / float(slopes @ slopes)
-        return found
+        return _at_excess(speeds, excess, *self.linear(chart, time, values, speeds))
 
     def sides(
         self, chart: DriverChart, time: float, values: Number, speeds: Number, near: float = 1.0
@@ -277,23 +275,26 @@ class HeldSpeed:
         The part is from 0 to 1 where it can be held. The sides are `near` times as far apart as usual.
         """
         parts, grown = [], []
+        here, slopes = self.linear(chart, time, values, speeds)
         for side in (-1.0, 1.0):
-            beside = self.moved(chart, time, values, speeds, side * near * BESIDE * self.pace)
+            beside = _at_excess(speeds, side * near * BESIDE * self.pace, here, slopes)
             found = chart.rates(time, values, beside)
             # the power is that at the speed itself
             off = float(chart.state(time, values, beside).forces[1][: len(speeds)] @ (beside - speeds))
             parts.append(Rates(found.accelerations, found.power - off))
-            grown.append(self._growth(chart, time, values, speeds, parts[-1].accelerations))
+            grown.append(self._growth(chart, time, values, speeds, parts[-1].accelerations, here))
         return parts[0], parts[1], grown[0] / (grown[0] - grown[1]) if grown[0] > grown[1] else np.nan
 
     def jump(self, chart: DriverChart, time: float, values: Number, speeds: Number) -> float:
         """Return by how much the load jumps."""
-        ends = [chart.state(time, values, self.moved(chart, time, values, speeds, side * BESIDE * self.pace))
-                for side in (-1.0, 1.0)]  # fmt: skip
+        here = self.linear(chart, time, values, speeds)
+        ends = [chart.state(time, values, _at_excess(speeds, side * BESIDE * self.pace, *here)) for side in (-1.0, 1.0)]
         return float(np.max(np.abs(np.subtract(*(one.loaded.along((self.load,)) for one in ends)))))
 
-    def _growth(self, chart: DriverChart, time: float, values: Number, speeds: Number, second: Number) -> float:
-        """Return the rate of the load's speed at accelerations of the free drivers."""
+    def _growth(
+        self, chart: DriverChart, time: float, values: Number, speeds: Number, second: Number, here: float
+    ) -> float:
+        """Return the rate of the load's speed, whose excess is known, at accelerations of the free drivers."""
         quick = max(float(np.max(np.abs(speeds) / chart.scales)), float(np.sqrt(np.max(np.abs(second) / chart.scales))))
         step = INSTANT / quick if quick else INSTANT
 
@@ -303,7 +304,7 @@ class HeldSpeed:
             return (ends[1] - ends[0]) / (2.0 * h)
 
         # Richardson's extrapolation; what has drifted off the jump returns to it within about a radian
-        return (4.0 * over(step / 2.0) - over(step)) / 3.0 + quick * self.excess(chart, time, values, speeds)
+        return (4.0 * over(step / 2.0) - over(step)) / 3.0 + quick * here
 
     def rates(self, chart: DriverChart, time: float, values: Number, speeds: Number) -> Rates:
         """Return the rates between those of both sides under which the speed is held."""
@@ -312,6 +313,11 @@ class HeldSpeed:
         below, above, part = self.sides(chart, time, values, speeds)
         return Rates(below.accelerations + part * (above.accelerations - below.accelerations),
                      below.power + part * (above.power - below.power))  # fmt: skip
+
+
+def _at_excess(speeds: Number, excess: float, here: float, slopes: Number) -> Number:
+    found: Number = speeds + (excess - here) * slopes / float(slopes @ slopes)
+    return found
 
 
 def _speed_of(load: Load, state: DriverState) -> float:
