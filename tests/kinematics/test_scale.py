@@ -19,7 +19,7 @@ from tests.oracle.cases import BAD, stored
 from tests.scaled import scaled
 from tests.support import examples
 
-POWERS = (-7, -6, -4, -2, 1, 3, 5, 7)
+POWERS = (-9, -7, -6, -4, -2, 1, 3, 5, 7, 9)
 # Several groups in a row, near limit positions here and there, magnify the different rounding of other units.
 SAME = 1e-7
 # Random mechanisms of each family, one in so many: all of them were compared once.
@@ -58,7 +58,7 @@ def _assert_alike(one: ck.results.Motion | str, other: ck.results.Motion | str, 
 @catalog.each(catalog.NAMES)
 def test_motions_of_the_catalog_are_the_same_in_all_units(name: str) -> None:
     number = catalog.NAMES.index(name)
-    _assert_same(catalog.mechanism(name), 1e-9 if number % 2 else 1e9, 10.0 ** POWERS[number % len(POWERS)])
+    _assert_same(catalog.mechanism(name), 10.0 ** POWERS[number % len(POWERS)])
 
 
 @pytest.mark.parametrize("name", [name for name in stored() if not name.startswith(BAD)][::SOME])
@@ -81,7 +81,7 @@ OF_SIZES = (
 
 
 @pytest.mark.full
-@settings(deadline=None, max_examples=examples(40))
+@settings(deadline=None, max_examples=examples(20))
 @given(st.sampled_from(OF_SIZES), st.lists(st.integers(-6, 6), min_size=2, max_size=4))
 def test_designs_of_an_array_are_what_each_is_alone(name: str, powers: list[int]) -> None:
     """However large the others are."""
