@@ -184,9 +184,9 @@ class LimitScreening(ShortRepr):
         comes_near = np.any(self._margins_on(numbers, approach) < NEAR, axis=1)
         early = np.array(np.broadcast_to(comes_near, numbers.extent[:1]))
         if early.any():
-            # the way is looked at as a motion is
+            # the way is looked at as a motion is: groups keep their signs over gaps of it
             screened = self.screen_all(resting_numbers(numbers_of_designs(numbers, np.flatnonzero(early)), approach))
-            early[early] = screened.failed.any(axis=1) | np.isin(screened.designs, screened.to_solve)
+            early[early] = (screened.failed[:, 0] != 0) | np.isin(screened.designs, screened.to_solve)
         return near, early
 
     def clear(self, numbers: CallNumbers, least: Number) -> Number:

@@ -501,3 +501,17 @@ def test_poses_beyond_a_limit_are_not_taken_for_clear_ones():
             np.testing.assert_allclose(
                 found[name], motion.points[name.partition(".")[0]].position, atol=1e-9 * motion.size
             )
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_poses_beyond_a_gap_are_computed_without_solving(monkeypatch):
+    mechanism = loaded("geared-five-bar")
+    path = ck.compile(mechanism, [f"{point}.position" for point in mechanism.carriers], backend="numpy")
+    way = np.linspace(float(path.programs.approach.drawn("crank")), 2.0, 60)
+    solved = {value: ck.solve(mechanism, [value]) for value in (2.0, -4.59)}
+    assert not np.all(ck.solve(mechanism, way).assembled)
+    monkeypatch.setattr(PathPrograms, "solve", lambda *_: pytest.fail("a design is solved"))
+    for value, motion in solved.items():
+        for name, found in path([value]).items():
+            wanted = motion.points[name.partition(".")[0]].position
+            np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-12 * motion.size)
