@@ -47,7 +47,7 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, wrapped
 from compoundkin.base.errors import ChangePointWarning, InvalidInput, UnassembledPoses
 from compoundkin.base.linear import one_thread, zeros_of_forms
-from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.poses import FIXED
 from compoundkin.kinematics import Motion, solve
 from compoundkin.kinematics.extremes.dead_points import dead_points
 from compoundkin.kinematics.extremes.motion_between import inputs_between, times_between
@@ -271,16 +271,13 @@ def _at_limit(
         drives = [row for row in pose.system.rows if row.driver is not None]
         gone = {row.driver: float(v) for row, v in zip(drives, change[pose.driven], strict=True)}
         values = {name: v + _gone(pose.system, name, gone[name]) for name, v in values.items()}
-        pose = replace(pose, poses=_settled(pose.moved(state)))
+        moved = pose.moved(state)
+        pose = replace(pose, poses={name: one if one is FIXED else one.entry(()) for name, one in moved.items()})
     return pose, dict(values)
 
 
 def _gone(system: MotionEquations, name: str, away: float) -> float:
     return float(wrapped(away)) if system.motion.drives[name].is_angle else away * system.unit
-
-
-def _settled(poses: Mapping[str, Pose]) -> dict[str, Pose]:
-    return {name: pose if pose is FIXED else pose.entry(()) for name, pose in poses.items()}
 
 
 def _forms(pose: EquationsAtPose, null: Number, left: Number) -> Number:

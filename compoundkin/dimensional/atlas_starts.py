@@ -51,7 +51,7 @@ def _of_chain(
 ) -> Iterator[dict[str, Number]]:
     """Yield the values of designs of a chain that the mechanism is, for each way in which it is that."""
     own = _graph(chain.mechanism, CRANK)
-    if not _has_point(graph):
+    if not any(has for _, has in graph.nodes(data="has_point")):
         for node in own.nodes:
             own.nodes[node]["has_point"] = False
     is_same = (lambda a, b: a == b), (lambda a, b: a["code"] == b["code"])
@@ -93,10 +93,6 @@ def _graph(mechanism: Mechanism, crank: str) -> nx.Graph:
     for pair in mechanism.written_pairs:
         graph.add_edge(*pair.members[:2], letter=pair.name, code=pair.code)
     return graph
-
-
-def _has_point(graph: nx.Graph) -> bool:
-    return any(has for _, has in graph.nodes(data="has_point"))
 
 
 class _SameChain(NamedTuple):

@@ -15,7 +15,6 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import InvalidInput, Problem, WedgedPoses, warn
 from compoundkin.base.linear import one_thread
-from compoundkin.base.poses import FIXED
 from compoundkin.base.wrenches import Wrench
 from compoundkin.dynamics.forces import Forces
 from compoundkin.dynamics.friction.coulomb_friction import (
@@ -63,7 +62,7 @@ def force_analysis(motion: Motion, *, inertia: bool = True, holding: str = "") -
     refuse_off_pin(motion)
     if not inertia and any(one.loses_at_rotor for one in filter(None, map(as_motor, motion.mechanism.loads.values()))):
         # efforts of such motors depend on the acceleration, and statics has none
-        poses = {link: pose if pose is FIXED else pose.trimmed(1) for link, pose in motion.poses.items()}
+        poses = {link: pose.trimmed(1) for link, pose in motion.poses.items()}
         motion = replace(motion, order=min(motion.order, 1), poses=poses)
     found = _wrenches(motion, inertia, holding)
     singular = at_singular_poses(motion, found, lambda other: _wrenches(other, inertia, holding))

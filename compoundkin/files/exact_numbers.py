@@ -92,13 +92,9 @@ def _even(array: Floats, ends: Floats, angle: bool) -> dict[str, Any] | None:
     for digits in (*range(13), 17) if np.isfinite(rough) else ():
         step = round(rough, digits)
         written = spaced(start, stop, step) if step else None
-        if written is not None and np.array_equal(_converted(written, angle), array):
+        if written is not None and np.array_equal(np.deg2rad(written) if angle else written, array):
             return {"from": plain(start), "to": plain(stop), "step": plain(step)}
     return None
-
-
-def _converted(written: Floats, angle: bool) -> Floats:
-    return np.deg2rad(written) if angle else written
 
 
 def rate(value: Number, angle: bool) -> Any:

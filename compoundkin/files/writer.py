@@ -41,7 +41,11 @@ def document(mechanism: Mechanism) -> dict[str, Any]:
     for name in PAIRS:
         out[name] = [_pair(item) for item in mechanism.items if getattr(item, "table", "") == name]
     out[CYLINDERS] = [_pair(item) for item in mechanism.cylinders.values()]
-    out[DRIVES] = [_driven(mechanism, item) for item in mechanism.items if isinstance(item, Drive | PrescribedMotion)]
+    out[DRIVES] = [
+        _lead(item) if isinstance(item, PrescribedMotion) else _drive(mechanism, item)
+        for item in mechanism.items
+        if isinstance(item, Drive | PrescribedMotion)
+    ]
     out[doc.DRAWN.name] = _points(mechanism.sketch)
     for name in (*LOADS, OUTLINES):
         out[name] = [_load(mechanism, item) for item in mechanism.items if getattr(item, "table", "") == name]
@@ -109,10 +113,6 @@ def _pair(item: Any) -> dict[str, Any]:
             raise InvalidInput(Problem(f"{item.table}.{item.name}.{key.name}", what, remedy))
     out = _table(item, item.keys)
     return {key: value for key, value in out.items() if key != "name" or value != default_name(item)}
-
-
-def _driven(mechanism: Mechanism, item: Drive | PrescribedMotion) -> dict[str, Any]:
-    return _lead(item) if isinstance(item, PrescribedMotion) else _drive(mechanism, item)
 
 
 def _lead(item: PrescribedMotion) -> dict[str, Any]:

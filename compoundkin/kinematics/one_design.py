@@ -18,7 +18,6 @@ from compoundkin.kinematics.curve.configuration_curve import ConfigurationCurve
 from compoundkin.kinematics.curve.followed_poses import FollowedPoses
 from compoundkin.kinematics.curve.group_paths import GroupPath
 from compoundkin.kinematics.curve.modes import StatedModes
-from compoundkin.kinematics.curve.turn_counting import Turns
 from compoundkin.kinematics.driver_values import Inputs, inputs, mapped, times_of
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve, solving_order_of
@@ -127,7 +126,7 @@ class _Design:
                 for k, missed in curve.near_misses.items()
             },
             paths={k: self._path(path) for k, path in curve.paths.items()},
-            turns={link: self._turns(turns) for link, turns in curve.turns.items()},
+            turns={link: replace(turns, angles=self.row(turns.angles)) for link, turns in curve.turns.items()},
         )
 
     def _number(self, value: Number) -> Number:
@@ -137,9 +136,6 @@ class _Design:
     def _path(self, path: GroupPath) -> GroupPath:
         s, states, slopes, reach, side = map(self.row, (path.s, path.states, path.slopes, path.reach, path.side))
         return GroupPath(s, states, slopes, reach, side, tuple(self._path(one) for one in path.returns))
-
-    def _turns(self, turns: Turns) -> Turns:
-        return replace(turns, angles=self.row(turns.angles))
 
     def _shown(self, shown: StatedModes, shape: tuple[int, ...]) -> StatedModes:
         def own(value: Any) -> Any:

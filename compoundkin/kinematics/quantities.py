@@ -421,7 +421,8 @@ def table_of(motion: AtPoses, *names: str) -> Table:
     whole = (*_time(motion), *chosen, Quantity(ASSEMBLED, "", motion.assembled))
     columns = {column.name: column for column in _designs(motion.shape)}
     for column in (part for one in whole for part in one.components):
-        columns.setdefault(column.name, _flat(column, motion.shape))
+        flat = np.broadcast_to(column.values, motion.shape).reshape(-1)
+        columns.setdefault(column.name, replace(column, values=flat))
     return Table(motion.mechanism.title, tuple(columns.values()))
 
 
@@ -454,10 +455,6 @@ def _chosen(motion: AtPoses, names: Sequence[str]) -> Iterator[Quantity]:
     found = [quantity(motion, name) for name in names]
     yield from (read_of(owner_of(motion, "drives", name), VALUE) for name in motion.drives)
     yield from found
-
-
-def _flat(found: Quantity, shape: tuple[int, ...]) -> Quantity:
-    return replace(found, values=np.broadcast_to(found.values, shape).reshape(-1))
 
 
 def _designs(shape: tuple[int, ...]) -> Iterator[Quantity]:

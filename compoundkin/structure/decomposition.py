@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 
 from compoundkin.base.arguments import checked
 from compoundkin.base.buffers import without_collection
+from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidMechanism
 from compoundkin.base.linear import one_thread
 from compoundkin.model.elements import Drive
@@ -207,7 +208,7 @@ def _closed(system: System, body: Body, pairs: Sequence[Pair], drives_inside: Se
         amount = sum(held for held, _ in extra)
         drives = spanned(body, [link for _, links in extra for link in links])
         links = tuple(dict.fromkeys(_between(drives))) or body.links
-        excess = _number(amount, "constraint")
+        excess = count_phrase(amount, "constraint")
         text = f"{_listed(links)}: driven links close on themselves, held by {excess} too many"
         names = [*(step.drive.name for step in drives if not step.is_passive), *closing]
         ways = [f"remove {_of(amount, names, 'driver')}"] if names else []
@@ -294,10 +295,10 @@ def _over(system: System, found: Deficiency) -> Fault:
     drives = [s for body, on_it in by_body.items() for s in spanned(system.bodies.body(body), on_it)]
     links = _in_input_order(system, [*touched, *_between(drives)])
     if found.turning and not any(step.pair.free_is_angle for step in drives):
-        excess = _number(found.redundant, "constraint")
+        excess = count_phrase(found.redundant, "constraint")
         text = f"{_listed(links)} {_are(links)} kept from turning by {excess} too many, in loops of slides alone"
         return Fault("over", links, found.redundant, text, "nothing has to be changed: they move all the same")
-    text = f"{_listed(links)} {_are(links)} held by {_number(found.redundant, 'constraint')} too many"
+    text = f"{_listed(links)} {_are(links)} held by {count_phrase(found.redundant, 'constraint')} too many"
     pairs = dict.fromkeys(c.letter or _meant(system, c.pair) for c in found.tight if not system.is_thought(c))
     return Fault("over", links, found.redundant, text, _over_remedy(system, found.redundant, drives, list(pairs)))
 
@@ -313,7 +314,7 @@ def _over_remedy(system: System, amount: int, drives: Sequence[DrivenPair], pair
 def _under(system: System, part: Subsystem, found: Deficiency) -> Fault:
     bodies = [system.bodies.moving[u] for u in found.loose if system.is_body(u)]
     links = _in_input_order(system, [name for body in bodies for name in body.links])
-    text = f"{_listed(links)} {_are(links)} left with {_number(found.free, 'freedom')}"
+    text = f"{_listed(links)} {_are(links)} left with {count_phrase(found.free, 'freedom')}"
     own = set(part.unknowns)
     if not any(side not in own for constraint in part.constraints for side in constraint.sides):
         remedy = f"join {_listed(links)} to the frame by a pair"
@@ -328,7 +329,7 @@ def _under(system: System, part: Subsystem, found: Deficiency) -> Fault:
 
 def _under_remedy(amount: int, choices: Sequence[str]) -> str:
     if not choices:
-        return f"hold {_number(amount, 'freedom')} by further pairs"
+        return f"hold {count_phrase(amount, 'freedom')} by further pairs"
     wanted = "a driver on one of" if amount == 1 else f"{amount} drivers among"
     return f"add {wanted}: {_listed(choices)}"
 
@@ -365,7 +366,7 @@ def _of(amount: int, names: Sequence[str], word: str, among: str = "") -> str:
     """Write "driver a" or "one of the drivers a, b", with their number."""
     among = among or f"of the {word}s"
     if len(names) == 1:
-        return f"{'the ' + word if word == 'driver' else _number(amount, word) + ' of the pair'} {names[0]}"
+        return f"{'the ' + word if word == 'driver' else count_phrase(amount, word) + ' of the pair'} {names[0]}"
     count = "one" if amount == 1 else str(amount)
     return f"{count} {among} {_listed(names)}"
 
@@ -376,7 +377,3 @@ def _either(names: Sequence[str]) -> str:
 
 def _are(links: Sequence[str]) -> str:
     return "is" if len(links) == 1 else "are"
-
-
-def _number(amount: int, word: str) -> str:
-    return f"{amount} {word}{'' if amount == 1 else 's'}"

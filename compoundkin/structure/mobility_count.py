@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from compoundkin.base.display import count_phrase
 from compoundkin.base.poses import Pose
 from compoundkin.model.elements import Drive
 from compoundkin.model.mechanism import Mechanism
@@ -62,7 +63,7 @@ class Mobility:
         kinds = [f", {letter[h]} = {self._kinds(h)}" for h in held]
         if self.passive:
             symbols, numbers = f"{symbols} - f0", f"{numbers} - {self.passive}"
-            kinds.append(f", f0 = {_counted(self.passive, 'passive freedom')}")
+            kinds.append(f", f0 = {count_phrase(self.passive, 'passive freedom')}")
         return f"F = 3 (n - 1){symbols} = 3 ({self.links} - 1){numbers} = {self.freedoms}{''.join(kinds)}"
 
     @property
@@ -74,13 +75,13 @@ class Mobility:
         >>> Mobility(3, (PairCount("R", 2, 3),), 0).verdict
         'mobility 0 and no driver: a structure that does not move'
         """
-        drivers = _counted(self.drivers, "driver") if self.drivers else "no driver"
+        drivers = count_phrase(self.drivers, "driver") if self.drivers else "no driver"
         missing = self.freedoms - self.drivers
         outcome = "the motion is determined" if self.drivers else "a structure that does not move"
         if self.freedoms < 0 and not self.drivers:
-            outcome = f"{_counted(-self.freedoms, 'constraint')} too many for a structure that just holds"
+            outcome = f"{count_phrase(-self.freedoms, 'constraint')} too many for a structure that just holds"
         elif missing:
-            outcome = f"{_counted(abs(missing), 'driver')} {'is' if abs(missing) == 1 else 'are'} "
+            outcome = f"{count_phrase(abs(missing), 'driver')} {'is' if abs(missing) == 1 else 'are'} "
             outcome += "missing" if missing > 0 else "too many"
         return f"mobility {self.freedoms} and {drivers}: {outcome}"
 
@@ -110,10 +111,6 @@ def mobility_of(mechanism: Mechanism, pairs: Sequence[Pair], passive: Sequence[P
 
 def _times(held: int) -> str:
     return f"{held} " if held > 1 else ""
-
-
-def _counted(number: int, word: str) -> str:
-    return f"{number} {word}{'' if number == 1 else 's'}"
 
 
 # How many freedoms a link has in the plane.

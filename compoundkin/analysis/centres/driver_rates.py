@@ -122,7 +122,7 @@ class DriverRates:
         return at_poses(point, at), at_poses(spread, at)
 
 
-def at_poses(array: Number, at: Number) -> Number:
+def at_poses(array: Number, at: Number | slice) -> Number:
     """Return an array at some poses, unchanged if it has one column for all.
 
     >>> at_poses(np.arange(4.0), np.array([1, 3])).tolist()

@@ -16,7 +16,7 @@ import numpy as np
 
 from compoundkin.analysis.centres.circle_diagram import Couple, Diagram, couple, diagram_of
 from compoundkin.analysis.centres.derivation import Derivation, DerivationStep, SolvedCentre, crossing_text, derive
-from compoundkin.analysis.centres.driver_rates import DriverRates
+from compoundkin.analysis.centres.driver_rates import DriverRates, at_poses, or_infinite
 from compoundkin.analysis.centres.evaluation import Evaluation, recompute
 from compoundkin.analysis.centres.homogeneous import OwnCoordinates, PrimaryCentres, cross, dot, norm
 from compoundkin.base.arguments import checked
@@ -288,16 +288,12 @@ def _concatenated(
 
 
 def _block(derivation: Derivation, places: PrimaryCentres, solved: Number | None, block: slice) -> Evaluation:
-    units = [_cut(unit, block) for unit in places.units]
-    rates = [_cut(rate, block) for rate in places.rates]
+    units = [at_poses(unit, block) for unit in places.units]
+    rates = [at_poses(rate, block) for rate in places.rates]
     part = Evaluation(derivation, units, rates)
     part.run(None if solved is None else solved[..., block])
     recompute(part)
     return part
-
-
-def _cut(array: Number, block: slice) -> Number:
-    return array if array.shape[-1] == 1 else array[..., block]
 
 
 def _joined(parts: list[Number], blocks: list[slice]) -> Number:
@@ -475,11 +471,11 @@ def velocity_check(found: Velocities, motion: Motion) -> VelocityCheck:
             turning = np.abs(found.angular_velocity(name) - link.angular_velocity)
             going = np.abs(found.at(name, np.asarray(link.origin.position)) - np.asarray(link.origin.velocity))
             gap = np.maximum(turning, going / size)
-            links[name] = np.where(usable[name], _certain(gap / scale), np.nan)
+            links[name] = np.where(usable[name], or_infinite(gap / scale), np.nan)
         for letter, carriers in motion.mechanism.carriers.items():
             point = motion.points[letter]
             gap = np.abs(found.at(carriers[0], np.asarray(point.position)) - np.asarray(point.velocity))
-            points[letter] = np.where(usable[carriers[0]], _certain(gap / (scale * size)), np.nan)
+            points[letter] = np.where(usable[carriers[0]], or_infinite(gap / (scale * size)), np.nan)
     return VelocityCheck(links, points)
 
 
@@ -500,8 +496,3 @@ def collinearity_of(centres: CentreVectors) -> dict[tuple[str, str, str], Number
         count = centres.motion.inputs.designs * centres.motion.inputs.poses
         found[names[i], names[j], names[k]] = np.broadcast_to(volume, (count,)).reshape(shape)
     return found
-
-
-def _certain(value: Number) -> Number:
-    """Return values with inf for NaN: a missing value is no agreement."""
-    return np.where(np.isnan(value), np.inf, value)

@@ -9,7 +9,7 @@ import numpy as np
 
 from compoundkin.base.errors import InvalidInput
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.extremes import Extreme, Measure, Places, extremes
+from compoundkin.kinematics.extremes import Measure, Places, extremes
 from compoundkin.kinematics.extremes.stretches import SAME_PLACE
 from compoundkin.kinematics.quantities import Quantity, whole_and_part
 from compoundkin.model.attributes import GREATEST, LEAST, TIME, coordinate_dimension, unit_of, with_unit
@@ -104,7 +104,9 @@ def ranges_of(motion: Motion, design: int, asked: Sequence[str | Measure]) -> di
         return _at_pose(motion, design, [one if isinstance(one, str) else one.name for one in asked])
     found = extremes(motion, *asked) if asked else ()
     ends = [(one, word, getattr(one, word)) for one in found for word in (LEAST, GREATEST)]
-    known = [(one.name, word, one.unit, _number(end, design), float(end.at.place[design])) for one, word, end in ends]
+    known = [
+        (one.name, word, one.unit, float(end.value[design]), float(end.at.place[design])) for one, word, end in ends
+    ]
     known = [row for row in known if not np.isnan(row[3])]
     at = drivers_at(motion, design, [place for *_, place in known])
     figures = {
@@ -121,10 +123,6 @@ def ranges_of(motion: Motion, design: int, asked: Sequence[str | Measure]) -> di
         for one in found
         if (one.name, LEAST) in figures and (one.name, GREATEST) in figures
     }
-
-
-def _number(end: Extreme, design: int) -> float:
-    return float(end.value[design])
 
 
 def _at_pose(motion: Motion, design: int, names: Sequence[str]) -> dict[str, Range]:

@@ -19,6 +19,7 @@ from compoundkin.analysis.centres import instant_centres
 from compoundkin.analysis.centres.instant_centres import SLOWEST
 from compoundkin.base.arrays import Number, wrapped
 from compoundkin.base.errors import NotDetermined
+from compoundkin.base.newton import elementwise_largest
 from compoundkin.base.series import Series
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.finding import Finding, rounded_by, worst
@@ -142,7 +143,7 @@ def _pair(known: KnownSeries, pair: Pair, k: int) -> Number:
         held = [sum(rows[..., j, i] * rates[i] for i in range(len(rates))) for j in range(pair.held)]
     else:
         held = [series.derivative(k) for series in known.closure(pair)]
-    return _largest([one * length for one, length in zip(held, lengths, strict=True)])
+    return elementwise_largest([one * length for one, length in zip(held, lengths, strict=True)])
 
 
 def _twist(velocity: Number, u: Series) -> tuple[Number, Number, Number]:
@@ -168,13 +169,6 @@ def _still(motion: Motion, passive: DrivenPair, k: int) -> Number:
     """Return the rotation of a passive link relative to the link that carries it."""
     gap = motion.pairs[passive.pair.name].coordinate.derivative(k)
     return np.abs(wrapped(gap) if k == 0 else gap) * motion.sizes
-
-
-def _largest(values: list[Number]) -> Number:
-    out = np.abs(values[0])
-    for value in values[1:]:
-        out = np.maximum(out, np.abs(value))
-    return out
 
 
 def _scale(motion: Motion, k: int, counted: Number) -> Number:

@@ -296,13 +296,9 @@ class ArcLength:
         pace = along.abs2().sqrt().c
         arc = (length.c[0], *(c / k for k, c in enumerate(pace[: length.order], 1)))
         return implicit_series(
-            found, length.order, pace[0], lambda moved: compose_series(arc, moved) - _upto(length, moved.order)
+            found, length.order, pace[0], lambda moved: compose_series(arc, moved) - Series(length.c[: moved.order + 1])
         )
 
     def place(self, length: Series) -> Series:
         """Return the point at a length of arc that changes in time."""
         return self.curve.at(self.parameter(length))
-
-
-def _upto(series: Series, order: int) -> Series:
-    return Series(series.c[: order + 1])

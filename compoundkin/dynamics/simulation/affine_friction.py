@@ -242,7 +242,9 @@ class RubbingState(BodyState):
         motion, holds = free - inverse @ asked, -inverse.T @ (inverse @ asked)
         constraint = matrix @ (moved @ motion) - applied - rows.T @ holds
         pressed = self._to_pairs @ (self.chart.scales[:, None] * constraint)
-        transmitted = [self._transmitted(one, pressed) for one in self._geared]
+        transmitted = [
+            one.pair.transmitted(one.ends, one.poses, self._wrench(pressed, one.place)) for one in self._geared
+        ]
         return AffineMotion(motion, holds, constraint, pressed, np.reshape(transmitted, (-1, pressed.shape[1])))
 
     def _normal_forces(self, pressed: Number, beside: dict[str, Wrench]) -> Number:
@@ -279,9 +281,6 @@ class RubbingState(BodyState):
         tension = None if written is None else self.loaded.fitted(written.force, f"pretensions.{pair.name}")
         beside = tuple(pair.accompanying(ends, poses, one, tension) for one in (-1.0, 0.0, 1.0))
         return _GearedPair(pair, _ContactRows(rows, *self.chart.columns_told_by(pair)), ends, poses, beside)
-
-    def _transmitted(self, geared: _GearedPair, pressed: Number) -> Number:
-        return geared.pair.transmitted(geared.ends, geared.poses, self._wrench(pressed, geared.place))
 
     def _normal(self, affine: AffineMotion, flanks: Number) -> Number:
         """Return the normal forces (normal forces, 1 + frictions) with what teeth and strands add, by their flanks.

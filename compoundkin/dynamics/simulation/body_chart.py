@@ -247,7 +247,7 @@ class BodyChart:
             sense = float(own.pair.driven_by(own.drive.link))
             ends = self.pair_equations.ends_of(own.pair)
             series = own.pair.coordinate(ends, tuple(poses[link] for link in own.pair.members))
-            rows = [np.broadcast_to(_row(series.derivative(k)), times.shape) * sense for k in range(3)]
+            rows = [np.broadcast_to(np.ravel(series.derivative(k)), times.shape) * sense for k in range(3)]
             if own.pair.free_is_angle:
                 begun = float(np.ravel(self.start.drives[name].value)[0])
                 rows[0] = rows[0] + whole_turns(begun + sense * self._turning(own.pair, states[:n]) - rows[0])
@@ -378,7 +378,7 @@ class BodyState:
     @cached_property
     def loaded(self) -> LoadedState:
         """The state as loads see it."""
-        flat = {name: pose if pose is FIXED else pose.trimmed(1) for name, pose in self.world.items()}
+        flat = {name: pose.trimmed(1) for name, pose in self.world.items()}
         block = Block((1, 1), self.chart.ends, flat, {}, 1)
         return _LoadedBodies(self.chart.start, block, ONLY, ONLY, columns=self.world, seconds=self.time,
                              count=len(self.values), turns=self._turned, slopes=self.slopes)  # fmt: skip
@@ -499,7 +499,3 @@ def _pose(x: Number, v: Number, a: Number) -> Pose:
     second = (1j * a[2] - np.square(v[2])) * u / 2.0
     z = Series((x[0] + 1j * x[1], v[0] + 1j * v[1], (a[0] + 1j * a[1]) / 2.0))
     return Pose(z, Series((u, 1j * v[2] * u, second)), Series((x[2], v[2], a[2] / 2.0)))
-
-
-def _row(value: Any) -> Number:
-    return np.ravel(value)

@@ -14,9 +14,9 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.errors import CompoundkinError, FewDigits
-from compoundkin.base.poses import FIXED, Pose
+from compoundkin.base.poses import Pose
 from compoundkin.dynamics.simulation.body_chart import BodyChart
-from compoundkin.dynamics.simulation.driver_chart import DriverChart
+from compoundkin.dynamics.simulation.driver_chart import DriverChart, still
 from compoundkin.dynamics.simulation.driver_state import DriverState
 from compoundkin.dynamics.simulation.friction_chart import FrictionChart
 from compoundkin.dynamics.simulation.friction_table import FrictionTable
@@ -145,16 +145,12 @@ def integrable(chart: DriverChart, time: float, state: Number) -> tuple[Chart, N
 
 def by_links(chart: DriverChart, state: DriverState) -> tuple[BodyChart, Number]:
     """Return the chart of the coordinates of all links, and a state of drivers in it."""
-    world = {link: _still(pose) for link, pose in state.block.world.items()}
+    world = {link: still(pose) for link, pose in state.block.world.items()}
     contacts = chart.stop_contacts, chart.closed, chart.phase, chart.open_pairs
     kind = FrictionChart if chart.mechanism.frictions else BodyChart
     found = kind(chart.start, chart.free, chart.laws, world, *contacts)
     rates = [_rates(state.block.world[link]) for link in found.links]
     return found, np.concatenate([found.first, np.ravel(rates)])
-
-
-def _still(pose: Pose) -> Pose:
-    return pose if pose is FIXED else pose.trimmed(0).entry((0, 0))
 
 
 def _rates(pose: Pose) -> tuple[float, float, float]:

@@ -215,7 +215,7 @@ class DriverChart:
     def _store_states(self, world: Mapping[str, Pose]) -> None:
         """Store the states of groups without signs."""
         for solver in (s for s in self.order.solvers if s.is_numbered):
-            bodies = [_still(world[body.links[0]]) for body in solver.group.bodies]
+            bodies = [still(world[body.links[0]]) for body in solver.group.bodies]
             self.states[solver.index] = equations_of(solver).state(bodies).reshape(1, 1, -1)
 
     def turns_of(self, pair: str, angle: float, values: Number) -> float:
@@ -343,6 +343,6 @@ class _ConfigurationChoice:
         return None if known is None else known.at(self.values)
 
 
-def _still(pose: Pose) -> Pose:
+def still(pose: Pose) -> Pose:
     """Return a pose at its first entry, without rates."""
     return pose if pose is FIXED else pose.trimmed(0).entry((0, 0))

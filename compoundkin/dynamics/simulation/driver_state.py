@@ -501,14 +501,10 @@ def _single_pose(
     state: DriverState, start: Motion, drives: Mapping[str, tuple[Number, ...]], changed: Callable[[Series], Series]
 ) -> Motion:
     """Return a state as a motion of one pose, with the series of its poses changed."""
-    poses = {name: pose if pose is FIXED else _moved(pose, changed) for name, pose in state.block.world.items()}
+    poses = {name: pose if pose is FIXED else pose.mapped(changed) for name, pose in state.block.world.items()}
     inputs = replace(start.inputs.driven(drives), shape=(1,))
     failed = np.zeros((1, 1), dtype=int)
     return replace(start, order=2, inputs=inputs, poses=poses, failed=failed, time=np.full(1, state.time))
-
-
-def _moved(pose: Pose, true: Any) -> Pose:
-    return Pose(true(pose.z), true(pose.u), None if pose.theta is None else true(pose.theta))
 
 
 def _entry(value: Number) -> Number:

@@ -27,7 +27,7 @@ from compoundkin.dynamics.simulation.driver_state import rotors_that_lose
 from compoundkin.dynamics.simulation.integration import PARTS, integrate
 from compoundkin.dynamics.simulation.load_breaks import breaks_in_time
 from compoundkin.dynamics.simulation.phases import SimulationPhase
-from compoundkin.dynamics.simulation.simulated_course import ChartStretch, SimulatedCourse, Step
+from compoundkin.dynamics.simulation.simulated_course import ChartStretch, SimulatedCourse
 from compoundkin.dynamics.simulation.simulated_energy import SimulatedEnergy, joined_energy, simulated_energy
 from compoundkin.dynamics.simulation.simulation import Simulation
 from compoundkin.dynamics.simulation.tabulated_chart import counted_angles
@@ -245,7 +245,8 @@ def _times(course: SimulatedCourse, times: Any) -> Number:
     """Return the times of the result: the given ones up to the end, else evenly spaced ones."""
     if times is not None:
         return _requested_events(times, course)
-    speeds = [_farthest(step) / (step.last - step.first) for step in course.steps if step.last > step.first]
+    moving = [step for step in course.steps if step.last > step.first]
+    speeds = [float(np.max(np.abs(one.moved) / one.chart.scales)) / (one.last - one.first) for one in moving]
     count = int(np.clip(np.ceil(max(speeds, default=0.0) * course.last / APART), FEWEST, MOST))
     return np.linspace(0.0, course.last, count + 1)
 
@@ -256,11 +257,6 @@ def _holding(course: SimulatedCourse, phase: int, times: Number) -> tuple[Effort
     held = [effort(one.pair, force, name=f"hold of {one.name}") for one, force in found.items()]
     stuck = course.sticking(phase, times).items()
     return (*held, *(effort(pair, force, name=f"friction at rest in {pair}") for pair, force in stuck))
-
-
-def _farthest(step: Step) -> float:
-    """Return the greatest scaled step of a free driver."""
-    return float(np.max(np.abs(step.moved) / step.chart.scales))
 
 
 def _requested_events(times: Any, course: SimulatedCourse) -> Number:

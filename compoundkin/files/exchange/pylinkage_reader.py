@@ -226,7 +226,10 @@ class RigidBodies:
                 key = f"{link.key} (link)" if link.key == FRAME else link.key
                 self.joints[key], self.parts[key] = dict.fromkeys(link.joints), [link]
         self._order = list(links.values())
-        self._rank = {body: (body != FRAME, not self._drives(body), k) for k, body in enumerate(self.parts)}
+        self._rank = {
+            body: (body != FRAME, not any(part.is_driver for part in parts), k)
+            for k, (body, parts) in enumerate(self.parts.items())
+        }
         while self._by_two_joints() or self._by_bars():
             pass
 
@@ -289,9 +292,6 @@ class RigidBodies:
     def apart(self, joints: list[str]) -> bool:
         """Return whether joints are at several places."""
         return any(abs(self._places[joint] - self._places[joints[0]]) > self.near for joint in joints)
-
-    def _drives(self, body: str) -> bool:
-        return any(part.is_driver for part in self.parts[body])
 
 
 def _last(now: Mapping[str, str], body: str) -> str:

@@ -15,7 +15,7 @@ from compoundkin.analysis.equations.loop_equations import LoopEquations
 from compoundkin.analysis.equations.newton_iterations import NewtonIterations
 from compoundkin.analysis.equations.rate_equations import RateEquations, RateSolution
 from compoundkin.analysis.equations.reduced_system import pose_values, prescribed_values
-from compoundkin.base.arrays import degrees
+from compoundkin.base.arrays import degrees, first_entry
 from compoundkin.kinematics import Motion
 from compoundkin.model.attributes import ACCELERATION, DEGREES, VELOCITY, unit_of, with_unit
 from compoundkin.model.pairs.loop_terms import Implicit, Unknown
@@ -87,7 +87,7 @@ def _equation_blocks(found: LoopEquations) -> Iterator[Block]:
         yield Paragraph(IMPLICIT_FUNCTIONS.format(pairs=joined_links(unwritten)))
     yield Paragraph(_counted_equations(found))
     yield TableBlock((Column("unknown"), Column("what it is")), tuple(_unknown_row(one) for one in found.unknowns))
-    known = tuple((symbol, _first_length(length)) for symbol, length in found.lengths.items())
+    known = tuple((symbol, float(first_entry(length))) for symbol, length in found.lengths.items())
     if known:
         yield TableBlock((Column("known"), Column("length", style="each")), known)
 
@@ -101,11 +101,6 @@ def _counted_equations(found: LoopEquations) -> str:
 
 def _unknown_row(one: Unknown) -> tuple[Cell, ...]:
     return one.key, f"{_MEANING[one.kind]} {one.owner}" if one.kind == "angle" else f"{_MEANING[one.kind]}, {one.owner}"
-
-
-def _first_length(length: object) -> float:
-    """A length, of several designs the first."""
-    return float(np.ravel(np.asarray(length))[0])
 
 
 def constants_section(found: LoopEquations) -> Section | None:

@@ -275,7 +275,8 @@ def _chain_facts(structure: Structure, name: ChainName) -> Iterator[tuple[str, s
     if name.derived_from and len(name.derived_from) <= MANY:
         yield "derived from", " or ".join(name.derived_from)
     if name.variety is not None:
-        yield "variety", f"degree {name.variety}{_variety(name.variety)}"
+        every = ": no driver can be without effect on a loop" if name.variety == 0 else ""
+        yield "variety", f"degree {name.variety}{every}"
     if name.parts:
         yield (
             "parts",
@@ -293,10 +294,6 @@ def _missing_truss(group: Group) -> str:
     if len(group.bodies) < MOST_LINKS and all(pair.held == _LOWER for pair in (*group.inner, *group.outer)):
         return "no Baranov truss, for a part of it is rigid on its own, as a driver between moving links makes it"
     return "a truss that is in no list"
-
-
-def _variety(degree: int) -> str:
-    return ": no driver can be without effect on a loop" if degree == 0 else ""
 
 
 def _symmetry(name: ChainName) -> Iterator[tuple[str, str]]:

@@ -97,7 +97,9 @@ def link_parts(shown: PosedMechanism, motion: Motion | None) -> tuple[LinkPart, 
 def _part(shown: PosedMechanism, link: str, shapes: Sequence[OutlineShape], marks: Sequence[Marked]) -> LinkPart:
     profiled = [found for pair in shown.pairs if (found := as_profile_contact(pair)) is not None and found.on == link]
     grooves = {
-        pair.letters[0]: _arc(shown, pair, mark) for pair, mark in marks if pair.table == ARCS and _is_groove(mark)
+        pair.letters[0]: _arc(shown, pair, mark)
+        for pair, mark in marks
+        if pair.table == ARCS and isinstance(mark, Groove)
     }
     slots = {
         pair.letters[0]: _line(mark.line) for pair, mark in marks if pair.table == SLOTS and isinstance(mark, Groove)
@@ -176,10 +178,6 @@ def _assembled(motion: Motion, link: str) -> Pose:
         return flat[known] if flat.size > 1 else flat[0]
 
     return motion.poses[link].mapped(lambda series: Series((row(series.c[0]),)))
-
-
-def _is_groove(mark: Mark) -> bool:
-    return isinstance(mark, Groove)
 
 
 def _arc(shown: PosedMechanism, pair: Pair, mark: Mark) -> Arc:

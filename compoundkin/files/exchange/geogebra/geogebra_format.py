@@ -431,7 +431,7 @@ def add_shapes(
         _add_pair(build, shown, pair, points)
     for letter in traced(shown):
         for name, slider in sliders.items():
-            if build.is_slider(slider) and _moves(build, points[letter], slider):
+            if build.is_slider(slider) and slider in build.needs(points[letter]):
                 index = letter if len(sliders) == 1 else f"{letter}-{name}"
                 build.shape("locus", ("c", index), "curve", "Locus", (points[letter], slider))
 
@@ -480,8 +480,3 @@ def traced(shown: PosedMechanism) -> list[str]:
     asked = dict.fromkeys(name.split(".")[0] for name in mechanism.outputs)
     fixed = shown.points.get(FRAME, {})
     return [letter for letter in asked if letter in mechanism.carriers and letter not in fixed]
-
-
-def _moves(build: Construction, point: str, slider: str) -> bool:
-    """Return whether a point depends on a slider."""
-    return slider in build.needs(point)

@@ -19,7 +19,7 @@ import numpy as np
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.display import abbreviated_list, count_phrase
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.files.exchange.geogebra.construction_commands import Straight
+from compoundkin.files.exchange.geogebra.construction_commands import Straight, is_point
 from compoundkin.files.exchange.geogebra.read_construction import (
     AUTHOR,
     ConstructionValues,
@@ -153,7 +153,7 @@ class MovingConstruction:
                 elif shape.length is not None:
                     yield MovingInput(name, 0.0, float(shape.length[0]), way)
                 else:
-                    places = [value[0] for value in self.drawn.values.values() if _is_place(value)]
+                    places = [value[0] for value in self.drawn.values.values() if is_point(value)]
                     reach = _REACH * max(abs(one - places[0]) for one in places)
                     yield MovingInput(name, way - reach, way + reach, way)
 
@@ -161,7 +161,7 @@ class MovingConstruction:
         """Return whether a number moves any point."""
         other = ConstructionValues(self.read, self.choices, {name: np.array([here + step, here - step])})
         return any(
-            _is_place(value) and _is_place(self.drawn.values.get(key)) and bool(np.any(value != self.drawn.values[key]))
+            is_point(value) and is_point(self.drawn.values.get(key)) and bool(np.any(value != self.drawn.values[key]))
             for key, value in other.values.items()
         )
 
@@ -209,7 +209,7 @@ class MovingConstruction:
 
     def _points(self) -> dict[str, Number]:
         """Return the points, of those that are always together the first that is shown."""
-        steady = [n for n in self.read.elements if self.read.kind(n) == "point" and _is_place(self.found.values.get(n))]
+        steady = [n for n in self.read.elements if self.read.kind(n) == "point" and is_point(self.found.values.get(n))]
         steady = [n for n in steady if np.isfinite(self.found.values[n][: _NEAR + 1]).sum() > _NEAR // 2]
         steady.sort(key=lambda name: not self.read.is_shown(name))
         rows = {name: self.found.values[name] for name in steady}
@@ -240,7 +240,8 @@ class MovingConstruction:
         self._refuse_unread()
         self.fixed = [name for name, row in self.places.items() if self.stays(row)]
         everything = [name for name in self.places if name not in self.fixed]
-        shown = [name for name in everything if self.read.is_shown(name) or name in self._drawn_ends()]
+        drawn = {self.same.get(name, name) for ends in self._drawn_shapes().values() for name in ends}
+        shown = [name for name in everything if self.read.is_shown(name) or name in drawn]
         if not everything:
             raise InvalidInput(Problem(self.where, "none of its points moves", "let a slider turn the crank"))
         for chosen in dict.fromkeys((tuple(shown), tuple(everything))):
@@ -281,9 +282,6 @@ class MovingConstruction:
                 if len(ends) > 1:
                     found[step.gives[0]] = tuple(ends)
         return found
-
-    def _drawn_ends(self) -> set[str]:
-        return {self.same.get(name, name) for ends in self._drawn_shapes().values() for name in ends}
 
     def _explain(self) -> list[str]:
         """Find links and pairs until no more than the drivers is free; return the points that are still free."""
@@ -627,10 +625,6 @@ class _Constraints:
             space = space - np.outer(space @ one, one)
         own = np.linalg.norm(space.reshape(len(self.names), -1), axis=1)
         return [self.names[k] for k in np.argsort(-own, kind="stable") if own[k] > 0.5 * own.max()]
-
-
-def _is_place(value: object) -> bool:
-    return isinstance(value, np.ndarray) and np.iscomplexobj(value)
 
 
 def _mentions(text: str, name: str) -> bool:

@@ -211,7 +211,7 @@ def guides_of(sliders: list[Slider], points: ConnectorPoints, size: float) -> It
     sliding: list[Slider] = []
     held: set[int] = set()
     for one in straight:
-        if one.connector.id in held or any(_is_fixed(one, other, size) for other in sliding):
+        if one.connector.id in held or any(_is_slide(other, one, size) for other in sliding):
             continue
         second = next((two for two in straight if two is not one and _is_slide(one, two, size)), None)
         if second is None:
@@ -273,11 +273,6 @@ def _is_slide(one: Slider, two: Slider, size: float) -> bool:
         and abs(apart.real) > _ALONG * abs(apart)
         and abs(apart) > ONE_LINE * size
     )
-
-
-def _is_fixed(one: Slider, other: Slider, size: float) -> bool:
-    """Return whether a slide holds a slider already."""
-    return _is_slide(other, one, size)
 
 
 # Turns a minute are clockwise there.
