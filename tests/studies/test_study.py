@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from functools import cache
 from pathlib import Path
-from threading import Barrier
+from threading import Barrier, Event
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput, LikelySlip
+from compoundkin.programs.backends.runner import ThreadTurns
 from compoundkin.studies import load_study
 from compoundkin.studies.responses import studied_path
 from compoundkin.studies.samples import sample_of
@@ -63,6 +64,21 @@ def test_a_row_is_what_solving_its_mechanism_finds(result: ck.results.StudyResul
             expected = ck.quantity(motion, name).values
             assert np.allclose(result[name][row], expected, rtol=1e-10, atol=0), name
     assert result["G.position"].shape == (8192, 6)
+
+
+def test_threads_take_turns_and_wait_for_nobody_forever() -> None:
+    turns, reached = ThreadTurns(), Event()
+
+    def other() -> None:
+        with turns.taken():
+            reached.set()
+
+    with ThreadPoolExecutor(1) as threads, turns.taken(), turns.taken():
+        with turns.left():
+            threads.submit(other).result(timeout=10.0)
+            assert reached.is_set()
+        # another that gets no turn goes on without
+        threads.submit(other).result(timeout=10.0)
 
 
 def test_numbers_depend_neither_on_chunks_nor_on_workers(result: ck.results.StudyResult) -> None:

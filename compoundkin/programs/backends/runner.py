@@ -1,9 +1,15 @@
-"""The interface of back ends: a flat program becomes a runner, which computes arrays from arrays, in kept threads."""
+"""The interface of back ends: a flat program becomes a runner, which computes arrays from arrays, in kept threads.
+
+Threads that run programs by turns with operations of NumPy take turns at these.
+"""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+import sys
+import threading
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import cache
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -56,3 +62,73 @@ def run_in_threads(work: Callable[..., Any], parts: Iterable[tuple[Any, ...]]) -
     finally:
         for each in waiting:
             each.exception()
+
+
+# Who waits longer goes on: nothing but time depends on whose turn it is.
+LONGEST_WAIT = 0.05
+
+
+class ThreadTurns:
+    """Turns of threads at stretches of many short operations on arrays.
+
+    Each operation lets go of the interpreter's lock for some microseconds. Two threads that are in such stretches at
+    the same time wake each other at every operation, which takes longer than the operation.
+
+    >>> turns = ThreadTurns()
+    >>> with turns.taken():
+    ...     with turns.left():
+    ...         "programs run, others have their turn"
+    'programs run, others have their turn'
+    """
+
+    def __init__(self) -> None:
+        self._lock, self._own = threading.Lock(), threading.local()
+        # without the interpreter's lock there is nothing to wait for
+        self._is_needed: bool = getattr(sys, "_is_gil_enabled", lambda: True)()
+
+    def renew(self) -> None:
+        """Forget who has the turn."""
+        self._lock, self._own = threading.Lock(), threading.local()
+
+    @contextmanager
+    def taken(self) -> Iterator[None]:
+        """Have the turn within, once others have left theirs."""
+        had = self._has
+        if not had:
+            self._take()
+        try:
+            yield
+        finally:
+            if not had:
+                self._leave()
+
+    @contextmanager
+    def left(self) -> Iterator[None]:
+        """Leave the turn to others within, if this thread has it."""
+        had = self._has
+        self._leave()
+        try:
+            yield
+        finally:
+            if had:
+                self._take()
+
+    @property
+    def _has(self) -> bool:
+        return getattr(self._own, "has", False)
+
+    def _take(self) -> None:
+        if self._is_needed:
+            self._own.has = self._lock.acquire(timeout=LONGEST_WAIT)
+
+    def _leave(self) -> None:
+        if self._has:
+            self._own.has = False
+            self._lock.release()
+
+
+TURNS = ThreadTurns()
+
+if hasattr(os, "register_at_fork"):
+    # another thread of the parent may have had the turn
+    os.register_at_fork(after_in_child=TURNS.renew)

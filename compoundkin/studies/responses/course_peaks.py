@@ -37,9 +37,10 @@ from compoundkin.base.extremes import (
     Windows,
 )
 from compoundkin.programs.backends import runner_of
+from compoundkin.programs.backends.runner import TURNS
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram
 from compoundkin.programs.graph.flat_program import BY_BOTH, BY_DESIGN, BY_POSE, FIXED_NUMBER, flat_program
-from compoundkin.programs.graph.operation_graph import LEAST, PARAMETER, TOTAL, InputNumber, OperationGraph
+from compoundkin.programs.graph.operation_graph import PARAMETER, TOTAL, InputNumber, OperationGraph
 from compoundkin.programs.recording.recorded_number import RecordedNumber
 
 
@@ -63,8 +64,8 @@ class SampledBest(NamedTuple):
     sign: Number
 
     def some(self, index: Number) -> SampledBest:
-        """Return some of them, by index."""
-        return SampledBest(*(each.take(index) for each in self))
+        """Return some of them by index, in order."""
+        return self if len(index) == len(self.value) else SampledBest(*(each.take(index) for each in self))
 
 
 class Vertices(NamedTuple):
@@ -105,7 +106,9 @@ class CoursePrograms:
         """
         inner, last = course.shape[1] - 2, course.shape[1] - 1
         inputs = {name: course[:, k : k + inner] for k, name in enumerate(SIDES)}
-        inputs |= {name: course[:, k] for name, k in zip(ENDS, (0, 1, 2, last - 2, last - 1, last), strict=True)}
+        inputs |= {
+            name: course[:, k] for name, k in zip(FIRST + LAST, (0, 1, 2, last - 2, last - 1, last), strict=True)
+        }
         inputs |= {"high": high, "low": low, "number": np.arange(1.0, last)[None], "end": np.full((1, 1), float(last))}
         found = _computed(self._counting, inputs, inner)
         return {1.0: PeakCount(*found[:3]), -1.0: PeakCount(*found[3:])}
@@ -128,7 +131,7 @@ class CoursePrograms:
 
     @cached_property
     def _counting(self) -> ReadyProgram[int]:
-        strata = dict.fromkeys(SIDES, BY_BOTH) | _by_design(*ENDS, "high", "low")
+        strata = dict.fromkeys(SIDES, BY_BOTH) | _by_design(*FIRST, *LAST, "high", "low")
         return _program({**strata, "number": BY_POSE, "end": FIXED_NUMBER}, _counts, self.backend)
 
     @cached_property
@@ -162,7 +165,7 @@ def course_programs(squared: bool, backend: str) -> CoursePrograms | None:
 
 # The inputs of programs by name: samples with those beside them, those at both ends, and those of a window.
 SIDES = ("before", "own", "after")
-ENDS = tuple(f"{end} {k}" for end in ("first", "last") for k in range(3))
+FIRST, LAST = (tuple(f"{end} {k}" for k in range(3)) for end in ("first", "last"))
 SAMPLED = tuple(f"sample {k}" for k in range(INNER + 2))
 Inputs = Mapping[str, Any]
 
@@ -171,7 +174,10 @@ def _computed(program: ReadyProgram[int], inputs: Mapping[str, Number], poses: i
     """Return the results of a program, (designs,) each; inputs are such too, or have poses."""
     given = {_input(name): each if each.ndim > 1 else each[:, None] for name, each in inputs.items()}
     shape = max(len(each) for each in given.values()), poses
-    return [np.ravel(each) for each in program.run(CallNumbers(given, shape, frozenset())).values()]
+    numbers = CallNumbers(given, shape, frozenset())
+    with TURNS.left():
+        found = program.run(numbers)
+    return [np.ravel(each) for each in found.values()]
 
 
 def _input(name: str) -> InputNumber:
@@ -196,33 +202,37 @@ def _by_design(*names: str) -> dict[str, int]:
 
 def _counts(at: Inputs) -> list[Any]:
     """Record how many samples may be next to the greatest value, the first and the last; then next to the least."""
-    inner, first, last = ([at[name] for name in names] for names in (SIDES, ENDS[:3], ENDS[3:]))
     found = []
-    for sign, best in ((1.0, at["high"]), (-1.0, -at["low"])):
-        may = _may_be_next(sign, best, inner[1], (inner[0], inner[2]), inner)
-        # the bend at a neighbour stands for that at an end
-        begins = _may_be_next(sign, best, first[0], first[1:2], first)
-        ends = _may_be_next(sign, best, last[2], last[1:2], last)
-        one, number = _number(may), np.where(may, at["number"], np.inf)
-        found += [
-            one.of(TOTAL, one.x) + _number(begins) + _number(ends),
-            np.where(begins, 0.0, np.minimum(_least(number), np.where(ends, at["end"], np.inf))),
-            np.where(ends, at["end"], -_least(np.where(may, -at["number"], np.where(begins, 0.0, np.inf)))),
-        ]
+    for sign, best in ((1.0, at["high"]), (-1.0, at["low"])):
+        inner, first, last = (_may_be_next(sign, best, *(at[name] for name in names)) for names in (SIDES, FIRST, LAST))
+        count, total, squares = (
+            _total(np.where(inner[1], own, 0.0)) + np.where(first[0], begin, 0.0) + np.where(last[2], end, 0.0)
+            for own, begin, end in (
+                (1.0, 1.0, 1.0), (at["number"], 0.0, at["end"]), (at["number"] ** 2, 0.0, at["end"] ** 2),
+            )
+        )  # fmt: skip
+        # two numbers are known by their sum and the sum of their squares
+        apart = np.where(count > 1.0, np.sqrt(np.maximum(2.0 * squares - total**2, 0.0)), 0.0)
+        half = np.where(count > 1.0, 0.5, 1.0)
+        found += [count, half * (total - apart), half * (total + apart)]
     return found
 
 
-def _least(number: Any) -> Any:
-    return number.of(LEAST, number.x)
+def _total(number: Any) -> Any:
+    return number.of(TOTAL, number.x)
 
 
-def _may_be_next(sign: float, best: Any, own: Any, beside: Sequence[Any], bent: Sequence[Any]) -> Any:
-    """Record whether the greatest value, times a sign, may be next to a sample that has some beside it."""
-    added = MOST_ADDED * np.abs((bent[2] - bent[1]) - (bent[1] - bent[0]))
-    may = (sign * own + added >= best) & (added > ROUNDING * np.abs(best))
-    for other in beside:
-        may = may & (sign * own >= sign * other)
-    return may
+def _may_be_next(sign: float, best: Any, before: Any, own: Any, after: Any) -> tuple[Any, Any, Any]:
+    """Record whether the greatest value, or the least with the sign -1, may be next to three samples in a row.
+
+    The first and the last are ends, to which the bend between stands for theirs.
+    """
+    rise, fall = sign * (own - before), sign * (after - own)
+    added = MOST_ADDED * np.abs(fall - rise)
+    bends = added > ROUNDING * np.abs(best)
+    rises, falls = rise >= 0.0, fall <= 0.0
+    begin, middle, end = (bends & (added >= sign * (best - one)) for one in (before, own, after))
+    return begin & (rise <= 0.0), middle & rises & falls, end & (fall >= 0.0)
 
 
 def _refined(squared: bool, at: Inputs) -> list[Any]:

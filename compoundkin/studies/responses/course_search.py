@@ -14,6 +14,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.extremes import MOST_ADDED, POLE, ROUNDING, Offers, SoughtPeaks, Windows, best_of, peaks
+from compoundkin.programs.backends.runner import TURNS
 from compoundkin.studies.responses.assembled_range import assembled_range
 from compoundkin.studies.responses.course_peaks import CoursePrograms, SampledBest, Vertices, course_programs
 from compoundkin.studies.responses.designs import Designs, refined_samples, refinement_parts
@@ -54,7 +55,8 @@ class SampledCourse(NamedTuple):
     def of(cls, values: Number, parts: int) -> SampledCourse:
         """Return a course with its extremes; their places are found in less time than themselves."""
         begin, flat = np.arange(len(values)) * values.shape[1], np.ravel(values)
-        high_at, low_at = values.argmax(axis=1), values.argmin(axis=1)
+        with TURNS.left():
+            high_at, low_at = values.argmax(axis=1), values.argmin(axis=1)
         return cls(parts, values, flat.take(begin + high_at), flat.take(begin + low_at), high_at, low_at)
 
     def best(self, sign: float) -> SampledBest:
@@ -87,12 +89,12 @@ class CourseSearch(ShortRepr):
     def extremes(self, signs: Sequence[float]) -> dict[float, CourseExtreme]:
         """Return the greatest values by the sign 1, the least by -1."""
         with np.errstate(all="ignore"):
-            found = self._searched(self.designs.computed_once((SampledCourse, self.name), self._course), signs)
-        known, extremes = assembled_range(self.designs).assembled, {}
-        for sign, value, place in zip(signs, *found, strict=True):
-            value = np.where(known, sign * value, np.nan)
-            extremes[sign] = CourseExtreme(value, np.where(np.isnan(value), np.nan, place))
-        return extremes
+            sampled = self.designs.computed_once((SampledCourse, self.name), self._course)
+            values, places = self._searched(sampled, signs)
+        values *= np.array(signs)[:, None]
+        known = assembled_range(self.designs).assembled
+        values, places = np.where(known, values, np.nan), np.where(known & ~np.isnan(values), places, np.nan)
+        return {sign: CourseExtreme(*each) for sign, *each in zip(signs, values, places, strict=True)}
 
     def _course(self) -> SampledCourse:
         """Return the course at the poses, or in a motion that has few between them too."""

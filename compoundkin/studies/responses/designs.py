@@ -18,6 +18,7 @@ from compoundkin.kinematics.extremes.motion_between import inputs_between, inter
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.attributes import RADIANS, RATES, TIME
+from compoundkin.programs.backends.runner import TURNS
 from compoundkin.programs.call_numbers import Call, CallNumbers
 from compoundkin.programs.compiled_path import CompiledPath
 from compoundkin.programs.derivatives.path_objective import PathObjective
@@ -109,7 +110,8 @@ class Designs(ShortRepr):
 
     def _outputs(self) -> PathValues:
         values, dimensions, more = self.call
-        return self.path.compiled(values, dimensions, **more)
+        with TURNS.left():
+            return self.path.compiled(values, dimensions, **more)
 
     @property
     def slopes(self) -> PathSensitivities:
@@ -193,7 +195,10 @@ class Designs(ShortRepr):
         there = self._numbers_between(rows, places, index)
         # a design that stays in its mode needs no look at limits between its poses
         programs = self.path.compiled.programs
-        found = np.broadcast_to(programs.program(there).run(there)[name], there.shape)
+        program = programs.program(there)
+        with TURNS.left():
+            found = program.run(there)[name]
+        found = np.broadcast_to(found, there.shape)
         if not is_angle or _are_within_half_a_turn(
             found, self.computed_once(("range", name), partial(self._range, name))
         ):
