@@ -369,7 +369,7 @@ def test_numbers_of_roots() -> None:
     np.testing.assert_allclose([root for root, _ in roots], [[0.0, 0.0, 1.0]], atol=1e-9)
 
 
-@settings(max_examples=examples(20), deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 @given(st.integers(0, 10**6), st.integers(3, 5))
 def test_as_many_real_zeros_as_there_can_be(seed: int, n: int) -> None:
     """n - 1 forms of n unknowns have an even number of real zeros, at most 2^(n - 1), and one that is built in."""

@@ -462,7 +462,7 @@ def test_how_many_solutions_a_pin_has() -> None:
 @pytest.mark.full
 def test_how_many_solutions_contacts_have() -> None:
     """Forces in three contacts keep their signs: eight linear systems, whose solutions are right or not."""
-    rng, size = np.random.default_rng(1), 2000
+    rng, size = np.random.default_rng(1), 600
     own, by = rng.normal(size=(3, size)), rng.normal(size=(3, 3, size)) * rng.uniform(0.0, 1.2, size)
     senses, count = rng.choice([1.0, -1.0], size=(3, size)), np.zeros(size, dtype=int)
     for signs in product((1.0, -1.0), repeat=3):
@@ -544,10 +544,10 @@ def by_newton(own: Any, effect: Any, rng: np.random.Generator) -> int:
     return len({tuple(row) for row in np.round(good, 6).tolist()})
 
 
-@pytest.mark.parametrize("count", [2, 3, pytest.param(4, marks=pytest.mark.full)])
+@pytest.mark.parametrize("count", [2, pytest.param(4, marks=pytest.mark.full)])
 def test_no_solution_of_coulombs_law_is_missed(count: int) -> None:
     """Newton's method from a thousand places each never knows of one more."""
-    rng = np.random.default_rng({2: 33, 3: 22, 4: 43}[count])
+    rng = np.random.default_rng({2: 33, 4: 43}[count])
     influence, signs = pins(rng, count, 60)
     state = solve_coulomb(influence, signs).state
     for k, found in enumerate(state.tolist()):

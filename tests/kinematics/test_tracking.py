@@ -376,12 +376,12 @@ def test_a_group_that_cannot_be_assembled_at_all() -> None:
 
 @pytest.mark.full
 def test_designs_drawn_at_angles_of_their_own_are_followed_like_each_by_itself() -> None:
-    """A hundred six-bars with limits of their own; ten took 9 s as all shared each step, or were not solved at all."""
+    """Forty six-bars with limits of their own; ten took 9 s as all shared each step, or were not solved at all."""
     places = {"A": 0.6 + 0.2j, "B": -0.1 - 2.3j, "C": 0.4 - 2.1j, "D": 0.9 + 0.6j, "E": 0.8 + 0.8j, "F": 0.3 - 0.5j,
               "G": -0.3 + 1.5j}  # fmt: skip
     links = [ck.link("frame", "A", "D", "G"), ck.link("BCE", "B", "C", "E")]
     links += [ck.link(name, *name) for name in ("AB", "CD", "EF", "FG")]
-    rng, count = np.random.default_rng(0), 100
+    rng, count = np.random.default_rng(0), 40
     drawn = {k: p + 0.02 * (rng.standard_normal(count) + 1j * rng.standard_normal(count)) for k, p in places.items()}
 
     def motion(points: dict[str, Any]) -> Motion:
@@ -392,7 +392,7 @@ def test_designs_drawn_at_angles_of_their_own_are_followed_like_each_by_itself()
     begin = process_time()
     together = motion({k: p[:, None] for k, p in drawn.items()})
     assert process_time() - begin < 10.0
-    for design in (0, 41, 99):
+    for design in (0, 17, 39):
         alone = motion({k: complex(p[design]) for k, p in drawn.items()})
         assert np.array_equal(alone.assembled, together.assembled[design])
         for k in range(2):

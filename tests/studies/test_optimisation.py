@@ -99,7 +99,7 @@ def test_a_figure_with_a_constraint_is_that_of_a_fine_grid(method: str | None) -
     best = strokes[angles >= 0.6].max()
     found = ck.optimise(
         LINKAGE, free, ck.goals.greatest("rocker.angle.stroke"), [at_least(TRANSMISSION, 0.6)], values=TURN,
-        starts={None: 3, "trust-constr": 1}.get(method, 6), method=method,
+        starts=3 if method == "differential_evolution" else 1, method=method,
     )  # fmt: skip
     assert best - 1e-3 < -found.value < best * 1.01
     assert found.is_held
@@ -145,7 +145,7 @@ def test_a_path_without_timing_is_found() -> None:
 def test_constraints_that_hold_nowhere_are_told() -> None:
     free, *_ = two_free(2)
     with pytest.warns(ck.errors.UnmetConstraints, match=r"not coupler.transmission_angle.least"):
-        found = ck.optimise(LINKAGE, free, "rocker.angle.stroke", at_least(TRANSMISSION, 1.5), values=TURN, starts=2)
+        found = ck.optimise(LINKAGE, free, "rocker.angle.stroke", at_least(TRANSMISSION, 1.5), values=TURN, starts=1)
     assert not found.is_held
 
 

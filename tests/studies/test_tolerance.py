@@ -125,7 +125,7 @@ def test_a_four_bar_has_the_mechanical_error_of_the_textbooks() -> None:
 def test_a_play_is_the_same_on_either_link() -> None:
     """What two links are off at their pin depends on neither, but for the axes that it is told in."""
     six_bar = ck.load("six-bar")
-    for pin, links in {"D": ("crank", "plate"), "A": ("plate", "rocker"), "E": ("frame", "crank")}.items():
+    for pin, links in {"A": ("plate", "rocker"), "E": ("frame", "crank")}.items():
         one, other = (
             ck.tolerance(six_bar, {}, "bar.angle", values=TURN, clearance={f"{link}.{pin}": 0.02}, count=800)[
                 "bar.angle"

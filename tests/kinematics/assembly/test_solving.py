@@ -43,6 +43,7 @@ def drawn_is_among(found):
 
 
 @pytest.mark.parametrize("word", ["RRR", "RRP", "RPR", "PRP", "RPP"])
+@settings(max_examples=8)
 @given(seed=seeds)
 def test_dyads(word, seed):
     geometry = dyad(word, np.random.default_rng(seed))
@@ -64,7 +65,7 @@ def test_pinned_groups_are_complete(seed, which):
 
 
 @pytest.mark.full
-@settings(max_examples=8)
+@settings(max_examples=5)
 @given(seed=seeds, which=st.integers(0, len(SMALL) - 1), number=st.integers(1, 2))
 def test_groups_with_slides_are_complete(seed, which, number):
     geometry = with_slides(SMALL[which], number, np.random.default_rng(seed))
@@ -108,7 +109,7 @@ def test_turned_shifted_and_scaled(word, seed):
     assert np.all(apart.min(axis=1) < 1e-7)
 
 
-@settings(max_examples=8)
+@settings(max_examples=5)
 @given(seed=seeds)
 def test_eigenvectors_and_paths_find_the_same(seed):
     geometry = random_truss(SMALL[seed % len(SMALL)], np.random.default_rng(seed))

@@ -62,7 +62,7 @@ PARTS = {"slider-crank-offset": 72, "crank-rocker": 90, "six-bar": 120}
 
 
 @pytest.mark.full
-@settings(max_examples=examples(25))
+@settings(max_examples=examples(12))
 @given(st.sampled_from(list(SMOOTH)), st.floats(-1.0, 1.0), st.integers(-8, -1))
 @example("slider-crank-offset", 0.3, -2)
 @example("slider-crank-offset", -0.3, -2)

@@ -18,7 +18,7 @@ from compoundkin.kinematics.groups import DYADS, DyadSolver
 from compoundkin.kinematics.groups.dyad import OuterPair
 from compoundkin.kinematics.groups.group_equations import GroupEquations, Member
 from compoundkin.model.pairs import KINDS, Pair
-from tests.support import largest, random_planar, random_pose, random_unit, sample
+from tests.support import examples, largest, random_planar, random_pose, random_unit, sample
 
 ORDER = 3
 MANY = 200
@@ -153,6 +153,7 @@ def test_every_kind_with_two_modes_has_a_meaning_here() -> None:
 
 
 @every_dyad
+@settings(max_examples=examples(12))
 @given(seed=SEEDS)
 def test_closes_by_the_pairs_own_equations_in_every_coefficient(kind: type[DyadSolver], seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -216,6 +217,7 @@ def test_signs_may_be_an_array_of_both(kind: type[DyadSolver]) -> None:
 
 
 @every_dyad
+@settings(max_examples=examples(12))
 @given(seed=SEEDS)
 def test_agrees_with_newton_and_the_series_step(kind: type[DyadSolver], seed: int) -> None:
     """Against `GroupEquations`: outside links and links inside composite bodies that move, a perturbed start."""
@@ -262,7 +264,7 @@ def as_general(case: Case) -> tuple[GroupEquations, Block]:
 
 
 @every_dyad
-@settings(max_examples=6)
+@settings(max_examples=3)
 @given(seed=SEEDS)
 def test_the_margin_is_negative_exactly_where_it_cannot_close(kind: type[DyadSolver], seed: int) -> None:
     """Against Newton from many random starts, which knows nothing of the formula."""

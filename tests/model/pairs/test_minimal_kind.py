@@ -192,7 +192,7 @@ def coarse(item: Any) -> Any:
     return replace(item, values=values[..., :: max(1, values.shape[-1] // 6)])
 
 
-LEFT_OUT = [(kind.code, name) for kind in KINDS.values() for name in answers(kind)][:: 1 if EVERYTHING else 3]
+LEFT_OUT = [(kind.code, name) for kind in KINDS.values() for name in answers(kind)][:: 2 if EVERYTHING else 4]
 REPORTED = dict(reversed(LEFT_OUT))
 
 
