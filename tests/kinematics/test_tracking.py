@@ -412,7 +412,7 @@ def test_a_motion_of_many_turns_is_followed_until_it_repeats_itself(monkeypatch)
                 motion.points[letter].velocity, once.points[letter].velocity[0], rtol=0.0, atol=1e-11 * once.size
             )
     # the same marched all along, which tells full turns of links too
-    course = np.linspace(9.0, -20.0, 40)
+    course = np.linspace(9.1, -20.3, 40)
     motion = ck.solve(mechanism, course)
     monkeypatch.setattr("compoundkin.kinematics.curve.group_paths.FEW_TURNS", np.inf)
     marched = ck.solve(mechanism, course)
