@@ -11,6 +11,7 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "compoundkin"
 FILES = sorted(PACKAGE.rglob("*.py"))
 Function = ast.FunctionDef | ast.AsyncFunctionDef
+Documented = ast.Module | ast.ClassDef | Function
 
 
 @cache
@@ -20,8 +21,23 @@ def tree(path: Path) -> ast.Module:
 
 @cache
 def nodes(path: Path) -> tuple[ast.AST, ...]:
-    """All that a file's code consists of."""
-    return tuple(ast.walk(tree(path)))
+    """All that a file's code consists of, as `ast.walk` finds it, but operators and whether names are read or set."""
+    found: list[ast.AST] = [tree(path)]
+    for node in found:
+        for part in vars(node).values():
+            if isinstance(part, ast.AST) and part._fields:
+                found.append(part)
+            elif type(part) is list:
+                found += [one for one in part if isinstance(one, ast.AST) and one._fields]
+    return tuple(found)
+
+
+@cache
+def texts(path: Path) -> tuple[str, ...]:
+    """The string constants of a file's code, its docstrings left out."""
+    docs = {docstring_of(node) for node in nodes(path) if isinstance(node, Documented)}
+    strings = (node for node in nodes(path) if isinstance(node, ast.Constant) and isinstance(node.value, str))
+    return tuple(str(node.value) for node in strings if node not in docs)
 
 
 def where(path: Path) -> str:
@@ -79,7 +95,7 @@ def functions(path: Path) -> Iterator[Function]:
 
 def docstring_of(node: ast.AST) -> ast.Constant | None:
     """The constant that is the docstring of a module, a class or a function."""
-    if isinstance(node, ast.Module | ast.ClassDef | Function) and node.body:
+    if isinstance(node, Documented) and node.body:
         first = node.body[0]
         if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant) and isinstance(first.value.value, str):
             return first.value
@@ -96,8 +112,7 @@ def length(function: Function) -> int:
 @cache
 def code_without_text(path: Path) -> str:
     """The names and string constants of a file's code, its docstrings and comments left out."""
-    docs = {docstring_of(node) for node in nodes(path)}
-    words = []
+    words = [*texts(path)]
     for node in nodes(path):
         if isinstance(node, ast.Name):
             words.append(node.id)
@@ -105,6 +120,4 @@ def code_without_text(path: Path) -> str:
             words.append(node.attr)
         elif isinstance(node, ast.alias):
             words.append(node.name)
-        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in docs:
-            words.append(node.value)
     return " ".join(words)

@@ -36,14 +36,24 @@ from tests.source import (
     Function,
     classes,
     code_without_text,
-    docstring_of,
     files_used,
     functions,
     nodes,
     room,
     rooms_used,
+    texts,
+    tree,
     where,
 )
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _code_is_forgotten() -> Iterator[None]:
+    """A million parts of trees, which later tests of the same process would go through again and again."""
+    yield
+    for kept in (tree, nodes):
+        kept.cache_clear()
+
 
 # From the ground up: each room imports only from those before it. Rooms of one line are sisters, without arrows
 # between them but those that ALLOWED_BETWEEN_SISTERS lists.
@@ -192,8 +202,8 @@ def test_kinds_are_named_in_their_own_folders_only() -> None:
         f"{where(path)}: {kind}"
         for path in FILES
         if not where(path).startswith(OF_KINDS)
-        for kind in sorted(kinds)
-        if re.search(rf"\b{kind}\b", code_without_text(path)) and (where(path), kind) not in ALLOWED_KINDS
+        for kind in sorted(kinds & set(re.findall(r"\w+", code_without_text(path))))
+        if (where(path), kind) not in ALLOWED_KINDS
     )
 
 
@@ -254,10 +264,8 @@ def places_of(words: Iterable[str]) -> dict[str, set[str]]:
     """In which files each word is a literal."""
     found: dict[str, set[str]] = defaultdict(set)
     for path in FILES:
-        docs = {docstring_of(node) for node in nodes(path)}
-        for node in nodes(path):
-            if isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in docs:
-                found[node.value].add(where(path))
+        for text in texts(path):
+            found[text].add(where(path))
     return {word: found[word] for word in words}
 
 

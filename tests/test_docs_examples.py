@@ -16,12 +16,25 @@ from click.testing import CliRunner
 
 import compoundkin as ck
 from compoundkin.cli import cli
-from compoundkin.dimensional import curve_fitting
+from compoundkin.dimensional import curve_fitting, sampled_functions, sampled_motions
 from compoundkin.files import loads
 
 DOCS = Path(__file__).parents[1] / "docs"
 READERS = ["for-students.md", "for-engineers.md", "for-programmers.md"]
 TASKS = "first-tasks.md"
+# Of the searches for linkages: what pages print holds for fewer designs too, which take half the time or less.
+FEWER: dict[Any, dict[str, int]] = {
+    curve_fitting: {"DESIGNS": 20_000, "STARTED": 50, "ROUNDS": 1, "GIVEN": 2},
+    sampled_functions: {"DESIGNS": 20_000},
+    sampled_motions: {"DESIGNS": 20_000},
+}
+
+
+@pytest.fixture
+def fewer_designs(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module, values in FEWER.items():
+        for name, value in values.items():
+            monkeypatch.setattr(module, name, value)
 
 
 @pytest.mark.parametrize(
@@ -50,6 +63,7 @@ def test_the_page_on_loads_prints_what_it_shows(capsys: pytest.CaptureFixture[st
 
 
 @pytest.mark.full
+@pytest.mark.usefixtures("fewer_designs")
 def test_the_page_on_synthesis_prints_what_it_shows(capsys: pytest.CaptureFixture[str]) -> None:
     page = (DOCS / "synthesis.md").read_text("utf-8")
     names: dict[str, Any] = {}
@@ -147,12 +161,10 @@ def test_the_pages_on_many_designs_and_other_programs_print_what_they_show(
 
 
 @pytest.mark.full
+@pytest.mark.usefixtures("fewer_designs")
 def test_the_page_on_sketches_is_true(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """What it prints holds for fewer designs of the atlas too, which take a third of the time."""
-    for name, value in {"DESIGNS": 20_000, "STARTED": 50, "ROUNDS": 1, "GIVEN": 2}.items():
-        monkeypatch.setattr(curve_fitting, name, value)
     monkeypatch.chdir(tmp_path)
     names: dict[str, Any] = {}
     text = (DOCS / "from-a-sketch.md").read_text("utf-8")

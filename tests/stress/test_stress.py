@@ -19,7 +19,7 @@ from tests.stress.trial import KINDS, drawn_case, tried
 
 pytestmark = pytest.mark.full
 
-COUNT, PARTS = 80, 4
+COUNT, PARTS = 40, 4
 small = partial(tried, small=True)
 
 
@@ -34,7 +34,7 @@ def test_what_is_known_to_be_faulty_still_is(number: int) -> None:
     assert small(SEED, number).faults, f"case {number} is right now: take it off the list"
 
 
-@pytest.mark.parametrize("number", range(12))
+@pytest.mark.parametrize("number", range(6))
 def test_the_suites_own_jacobian_and_rates_are_those_of_differences(number: int) -> None:
     case = drawn_case(SEED, number, small=True)
     equations = Equations(Placed(case.sketch))
@@ -94,15 +94,15 @@ def test_motions_that_once_could_not_be_differentiated_are_verified(seed: int, n
 
 @pytest.mark.parametrize("kind", KINDS[1:])
 def test_random_mechanisms_of_other_kinds_are_right(kind: str) -> None:
-    assert faults(partial(small, kind=kind), range(12)) == []
+    assert faults(partial(small, kind=kind), range(6)) == []
 
 
 def test_mutated_files_answer_or_say_what_is_wrong() -> None:
-    assert faults(mutated, range(200)) == []
+    assert faults(mutated, range(100)) == []
 
 
 def test_wrong_calls_say_what_is_wrong() -> None:
-    assert faults(misused, range(150)) == []
+    assert faults(misused, range(80)) == []
 
 
 def faults(trial: Callable[..., Outcome], numbers: list[int] | range) -> list[str]:

@@ -65,7 +65,7 @@ def test_every_equation_of_the_catalog_is_read_with_all_its_names(name: str) -> 
         assert said.count("=") == text(equation).count("=")
 
 
-@catalog.each(catalog.CHOSEN)
+@catalog.each(catalog.THIRD)
 def test_matrices_and_right_hand_sides_are_read_entry_by_entry(name: str) -> None:
     for rates in equations_of(name).rates:
         for array in (rates.matrix, rates.right_side) if rates.unknowns else ():

@@ -184,7 +184,7 @@ def test_one_design_of_several_is_shown() -> None:
 # --- the source ------------------------------------------------------------------------------------------
 
 
-@catalog.each(catalog.CHOSEN)
+@catalog.each(catalog.THIRD)
 def test_the_sketch_is_small_well_formed_on_its_paper_and_the_same_every_time(name: str) -> None:
     picture = drawn(name)
     source = picture.svg
