@@ -156,21 +156,25 @@ def _submitted(executor: Executor, work: Callable[[Piece], Answer], piece: Piece
 
 # Pieces under way for each worker: one being computed, one waiting.
 AT_A_TIME = 2
-# The assumed number of workers of a foreign executor, which does not say; and the least of a cluster, which may be
-# starting, or grow with the work that waits.
+# The assumed number of workers of a foreign executor, which does not say; and the expected number of a cluster, which
+# may be starting, or grow with the work that waits.
 UNKNOWN_WORKERS = 16
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Workers(ShortRepr):
-    """An executor, or None for this thread alone; `number()` is its present number of workers."""
+    """An executor, or None for this thread alone; `number()` is its present number of workers.
+
+    There may soon be as many as `expected`.
+    """
 
     executor: Executor | None
     number: Callable[[], int]
+    expected: int = 0
 
     def room(self) -> int:
         """Return the number of pieces that may be under way now."""
-        return AT_A_TIME * self.number()
+        return AT_A_TIME * max(self.expected, self.number())
 
 
 @contextmanager
@@ -207,7 +211,8 @@ def _checked_workers(on: Any) -> Workers:
         raise InvalidInput(Problem("on", f"{short_repr(on)} computes nothing", remedy))
     if getattr(on, "asynchronous", False):
         raise InvalidInput(Problem("on", "the client is asynchronous", "distributed.Client(..., asynchronous=False)"))
-    return Workers(made(pure=False), lambda: max(UNKNOWN_WORKERS, sum(counts().values())))
+    # to carry a piece takes the cluster some ten milliseconds: those who are there take large ones
+    return Workers(made(pure=False), lambda: sum(counts().values()) or UNKNOWN_WORKERS, UNKNOWN_WORKERS)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
