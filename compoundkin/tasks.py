@@ -7,6 +7,6 @@
 
 from __future__ import annotations
 
-from compoundkin.dimensional.tasks import curve, dwell, function, mixed, output, points, poses, stroke, swing
+from compoundkin.dimensional.task_words import curve, dwell, function, mixed, output, points, poses, stroke, swing
 
 __all__ = ["curve", "dwell", "function", "mixed", "output", "points", "poses", "stroke", "swing"]

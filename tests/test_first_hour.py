@@ -14,7 +14,7 @@ from click.testing import CliRunner, Result
 import compoundkin as ck
 from compoundkin.base.errors import OTHER_WORDS, ExplainsAttributes, nearest
 from compoundkin.cli import VERBS, cli
-from compoundkin.dimensional.tasks import KEYS, read_task
+from compoundkin.dimensional.task_words import KEYS, read_task
 from compoundkin.files import loads
 
 FOUR_BAR = "four-bar:60,20,50,40"

@@ -1,4 +1,4 @@
-"""`compoundkin export`: a mechanism as a file of another program, a function in another language, or a TikZ picture."""
+"""`compoundkin export` and `import`: files of other programs, functions in other languages, TikZ pictures."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from compoundkin.base.errors import InvalidInput, Problem, nearest, suggestion
-from compoundkin.base.suffixes import SUFFIXES, file_format, suffix_for, suffix_of
+from compoundkin.base.suffixes import SUFFIXES, alternatives, file_format, suffix_for, suffix_of
 from compoundkin.cli.drive_options import MODE, names_option, read_assembly_modes
-from compoundkin.cli.file_options import load_mechanism, mechanism_argument, to_file, write_new
+from compoundkin.cli.file_options import import_with_notes, load_mechanism, mechanism_argument, to_file, write_new
 from compoundkin.cli.shell import put, say, working
 from compoundkin.files.exchange import MODULES, READ_ONLY
 from compoundkin.files.exchange.content import is_itself
@@ -204,3 +204,48 @@ def format_options(given: Sequence[str]) -> dict[str, str]:
             raise InvalidInput(Problem(f"--option {text}", "this is no option", "write NAME=VALUE"))
         found[name] = value
     return found
+
+
+class WithFormats(click.Command):
+    """A command that lists the formats of other programs in its help."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the formats that are read, then the examples."""
+        from compoundkin.files.exchange.known_formats import readable_formats
+
+        rows = [(one.name, one.title) for one in readable_formats().values()]
+        with formatter.section("Formats that are read"):
+            formatter.write_dl(rows)
+        super().format_epilog(ctx, formatter)
+
+
+@click.command(
+    cls=WithFormats,
+    epilog="""\b
+Examples:
+  compoundkin import crane.linkage2 -o crane.toml
+  compoundkin import 'https://app.pmksplus.com/?...' -o mine.toml
+  compoundkin import joints.csv --form joints
+  xclip -o | compoundkin import - -o pasted.toml
+""",
+)
+@click.argument("source", metavar="FILE|LINK")
+@click.option("--form", "form", default="", metavar="FORMAT", help="Its format; it is recognised if left out.")
+@to_file(f"Write a mechanism file here: {alternatives('mechanism')}; else TOML to stdout.")
+@click.option("--force", is_flag=True, help="Replace a file that is there.")
+def import_command(source: str, form: str, path: str | None, force: bool) -> int:
+    """Read a mechanism from another program's file, or from a link that holds it. Nothing is fetched.
+
+    What is not converted is noted on stderr. - reads standard input.
+    """
+    from compoundkin.files.mechanism_files import encoded
+
+    syntax = "toml" if path is None else file_format("mechanism", path)
+    found = import_with_notes(source, form)
+    content = encoded(found.mechanism, syntax, path or source)
+    if path is None:
+        put(content)
+    else:
+        write_new(Path(path), content, force)
+        say(f"Wrote {path}; see it with: compoundkin report {path}")
+    return 0

@@ -178,7 +178,7 @@ def _synthesise(given: Arguments) -> Iterator[str]:
 
 def _task() -> Schema:
     """Return the schema of a task: the text of a file, or its document with the keys that files have."""
-    from compoundkin.dimensional.tasks import CONDITIONS, KEYS
+    from compoundkin.dimensional.task_words import CONDITIONS, KEYS
 
     keys: Schema = {key: {} for own in KEYS.values() for key in own}
     conditions = {"type": "object", "properties": {key: {} for key in CONDITIONS}, "additionalProperties": False}

@@ -43,7 +43,7 @@ def command(file: str, folder: str | None, picture: str | None, form: str | None
     Angles are degrees in the file. Exit code 3: no mechanism without a defect.
     """
     from compoundkin.dimensional.synthesis import synthesise
-    from compoundkin.dimensional.tasks import read_task
+    from compoundkin.dimensional.task_words import read_task
     from compoundkin.files.parsed_document import parsed, text_of
 
     _check_places(picture, folder)
@@ -97,7 +97,7 @@ def trace_command(
 
     from compoundkin.base.errors import InvalidInput, Problem
     from compoundkin.dimensional.synthesis import synthesise
-    from compoundkin.dimensional.tasks import FEWEST_OF_CURVE, curve
+    from compoundkin.dimensional.task_words import FEWEST_OF_CURVE, curve
     from compoundkin.files.curve_files import read_curve, read_timed_curve
 
     _check_places(picture, folder)

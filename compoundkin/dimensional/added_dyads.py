@@ -19,7 +19,8 @@ from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidInput
 from compoundkin.dimensional.candidates import COUPLER, Candidates, Linkage, of_dyads
-from compoundkin.dimensional.dyads import RR, Dyad, dyads_of
+from compoundkin.dimensional.dyad_equations import RR, Dyad
+from compoundkin.dimensional.dyads import dyads_of
 from compoundkin.dimensional.motion_generation import spread_over_curve
 from compoundkin.dimensional.tasks import INPUT, Conditions, DwellTask, OutputTask, PoseTask
 from compoundkin.model.attributes import ANGLE

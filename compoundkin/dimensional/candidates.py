@@ -15,7 +15,7 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
-from compoundkin.dimensional.dyads import PR, RP, RR, Dyad
+from compoundkin.dimensional.dyad_equations import PR, RP, RR, Dyad
 from compoundkin.dimensional.tasks import INPUT, OUTPUT
 from compoundkin.model.attributes import ANGLE, POSITION
 from compoundkin.model.elements import Link, drawn, drive, link

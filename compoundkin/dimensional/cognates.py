@@ -25,7 +25,7 @@ from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase, disp
 from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
 from compoundkin.base.linear import one_thread
 from compoundkin.dimensional.candidates import COUPLER, POINT, Linkage, of_dyads
-from compoundkin.dimensional.dyads import PR, RR, Dyad
+from compoundkin.dimensional.dyad_equations import PR, RR, Dyad
 from compoundkin.dimensional.tasks import INPUT, OUTPUT
 from compoundkin.kinematics import Motion, solve
 from compoundkin.model.attributes import POSITION

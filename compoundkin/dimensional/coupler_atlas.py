@@ -19,7 +19,6 @@ from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import InvalidInput, Problem
-from compoundkin.dimensional import tasks
 from compoundkin.dimensional.atlas_designs import (
     BLOCK,
     POSES,
@@ -42,7 +41,8 @@ from compoundkin.dimensional.curve_likeness import (
     on_target,
     resampled,
 )
-from compoundkin.dimensional.tasks import Conditions, CurveTiming
+from compoundkin.dimensional.task_words import curve as curve_task
+from compoundkin.dimensional.tasks import ACCURACY, Conditions, CurveTiming
 from compoundkin.model.mechanism import Mechanism
 
 # Designs that are compared exactly at once, and of those that are known first.
@@ -152,8 +152,8 @@ class CouplerAtlas(ShortRepr):
             raise InvalidInput(Problem("size", f"lengths do not sum to {size:g}", "give a length above zero"))
         if count < 1:
             raise InvalidInput(Problem("count", f"{count} designs are too few", "give one or more"))
-        task = tasks.curve(curve, closed=closed)
-        wanted = Conditions.of(region, None, None, transmission, False, tasks.ACCURACY, obstacles)
+        task = curve_task(curve, closed=closed)
+        wanted = Conditions.of(region, None, None, transmission, False, ACCURACY, obstacles)
         sought = SoughtCurve(task.points, task.closed, None, CurveConditions(wanted, size))
         return self.nearest(sought, count, links=links, sliders=sliders)
 

@@ -27,7 +27,9 @@ from compoundkin.base.arrays import TURN, Number, wrapped
 from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dimensional.candidates import COUPLER, Candidates, Linkage, of_dyads
-from compoundkin.dimensional.dyads import PR, RP, RR, Dyad, Dyads, dyads_of
+from compoundkin.dimensional.dyad_equations import PR, RP, RR, Dyad
+from compoundkin.dimensional.dyads import Dyads, dyads_of
+from compoundkin.dimensional.task_words import chebyshev_spacing
 from compoundkin.dimensional.tasks import (
     INPUT,
     OUTPUT,
@@ -35,7 +37,6 @@ from compoundkin.dimensional.tasks import (
     PoseTask,
     StrokeTask,
     SwingTask,
-    chebyshev_spacing,
 )
 from compoundkin.model.elements import link
 from compoundkin.model.geometry import FRAME

@@ -20,7 +20,8 @@ from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidInput
 from compoundkin.dimensional.candidates import Candidates, Linkage, of_dyads, pairs_of
 from compoundkin.dimensional.cognates import crank_cognates
-from compoundkin.dimensional.dyads import PR, RR, Dyad, Dyads, circle_through, dyads_of
+from compoundkin.dimensional.dyad_equations import PR, RR, Dyad
+from compoundkin.dimensional.dyads import Dyads, circle_through, dyads_of
 from compoundkin.dimensional.tasks import Conditions, PoseTask, TimedPointTask, extent
 
 # So many dyads of a curve are paired, of those whose crank passes the poses in order or that may be driven.

@@ -17,8 +17,8 @@ from compoundkin.base.arrays import Number
 from compoundkin.base.display import count_phrase
 from compoundkin.base.errors import InvalidInput, Problem
 from compoundkin.dimensional.candidates import Candidates, Linkage, of_dyads, of_points
+from compoundkin.dimensional.dyad_equations import RR, Dyad
 from compoundkin.dimensional.dyad_pairs import DesignPositions, Pairs, pairs_through
-from compoundkin.dimensional.dyads import RR, Dyad
 from compoundkin.dimensional.tasks import MixedTask, PointTask
 
 # Points that have finitely many four-bars, by how many fixed pivots are given.

@@ -48,7 +48,8 @@ from compoundkin.dimensional.design_refinement import (
     different_verdicts,
     ranked,
 )
-from compoundkin.dimensional.tasks import NEXT, FunctionTask
+from compoundkin.dimensional.task_words import NEXT
+from compoundkin.dimensional.tasks import FunctionTask
 from compoundkin.model.attributes import ANGLE, VALUE
 from compoundkin.model.elements import drive, link, mode
 from compoundkin.model.fields import Item

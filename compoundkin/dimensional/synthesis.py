@@ -179,7 +179,7 @@ def synthesise(
     the sum of lengths, or by "accuracy"; functions that are approached by accuracy if it is left out. Raises
     InvalidInput for what is no task or condition.
 
-    >>> from compoundkin.dimensional.tasks import poses
+    >>> from compoundkin.dimensional.task_words import poses
     >>> angles = np.deg2rad([36.72, 15.64, -16.48, 31.29, -56.82])
     >>> places = [0.496 - 0.114j, -0.581 + 0.81j, -0.966 - 0.393j, 0.998 - 0.476j, 0.698 + 0.211j]
     >>> task = poses("plate", [(p.real, p.imag, a) for p, a in zip(places, angles)])

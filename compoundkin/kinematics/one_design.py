@@ -135,7 +135,8 @@ class _Design:
 
     def _path(self, path: GroupPath) -> GroupPath:
         s, states, slopes, reach, side = map(self.row, (path.s, path.states, path.slopes, path.reach, path.side))
-        return GroupPath(s, states, slopes, reach, side, tuple(self._path(one) for one in path.returns))
+        repeats = path.repeats and path.repeats._replace(gone=self.row(path.repeats.gone))
+        return GroupPath(s, states, slopes, reach, side, tuple(self._path(one) for one in path.returns), repeats)
 
     def _shown(self, shown: StatedModes, shape: tuple[int, ...]) -> StatedModes:
         def own(value: Any) -> Any:

@@ -33,6 +33,7 @@ from compoundkin.model.pairs import WRITTEN
 from compoundkin.model.pairs.contract import Pair, as_drivable
 from compoundkin.model.pairs.cylinder import Stroke
 from compoundkin.model.pairs.symbols import Groove, Outline, Wheel
+from compoundkin.model.units import LENGTHS
 from compoundkin.structure import Fault, Structure
 from compoundkin.studio.drawn_curves import OF_CURVES
 from compoundkin.studio.edited_document import Document, Placement, written_place
@@ -123,6 +124,7 @@ def _structure_of(reading: Reading) -> Reply:
         "is_as_drawn": mechanism is None or is_as_drawn(mechanism),
         "title": str(reading.document.get("title", "")),
         "unit": mechanism.unit if mechanism else "",
+        "units": list(LENGTHS),
         "links": [
             {
                 "name": name,

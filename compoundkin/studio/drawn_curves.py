@@ -48,7 +48,7 @@ class PenCurve(NamedTuple):
     @classmethod
     def of(cls, question: Mapping[str, Any]) -> PenCurve:
         """Return the curve of a question. Raises InvalidInput for what is none."""
-        from compoundkin.dimensional import tasks
+        from compoundkin.dimensional import task_words
 
         points, closed, links = question.get("points"), question.get("closed"), question.get("links", 6)
         if not isinstance(points, list) or len(points) > MOST_POINTS or not all(map(_is_place, points)):
@@ -57,7 +57,7 @@ class PenCurve(NamedTuple):
         if not isinstance(links, int) or not (closed is None or isinstance(closed, bool)):
             what = "it is not said how many links, or whether it is closed"
             raise InvalidInput(Problem("links, closed", what, "give 4, 6 or 8, and true or false"))
-        task = tasks.curve(np.array(points, float).reshape(-1, 2), closed=closed, links=links)
+        task = task_words.curve(np.array(points, float).reshape(-1, 2), closed=closed, links=links)
         return cls(task.points, task.closed, links)
 
 
@@ -105,12 +105,12 @@ def fitted(question: Mapping[str, Any]) -> Reply:
 
 def traced(question: Mapping[str, Any]) -> Reply:
     """Reply what `synthesise` finds for the curve: of a larger atlas, grown and refined, each verified."""
-    from compoundkin.dimensional import tasks
+    from compoundkin.dimensional import task_words
     from compoundkin.dimensional.candidates import POINT
     from compoundkin.dimensional.synthesis import synthesise
 
     curve = PenCurve.of(question)
-    answer = synthesise(tasks.curve(curve.points, closed=curve.closed, links=curve.links))
+    answer = synthesise(task_words.curve(curve.points, closed=curve.closed, links=curve.links))
     solved = [(one.candidate, np.ravel(one.motion.points[POINT].position), one.error) for one in answer]
     return _reply(curve, (_Suggestion(*one) for one in solved))
 

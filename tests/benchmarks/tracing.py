@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 
 from compoundkin.dimensional import curve_fitting
 from compoundkin.dimensional.coupler_atlas import coupler_atlas
-from compoundkin.dimensional.tasks import curve
+from compoundkin.dimensional.task_words import curve
 
 PLACES = 2000
 # LInK's own for its hand-drawn letters A to Z, with up to twenty joints: alpha_res.npy of ahnobari/LInKGenerator.

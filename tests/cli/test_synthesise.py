@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 
 import compoundkin as ck
 from compoundkin.cli import cli
-from compoundkin.dimensional.tasks import read_task
+from compoundkin.dimensional.task_words import read_task
 
 
 def run(*args: str) -> Result:

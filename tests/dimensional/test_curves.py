@@ -24,7 +24,8 @@ from compoundkin.dimensional.coupler_atlas import CouplerAtlas, coupler_atlas
 from compoundkin.dimensional.curve_chains import CurveChain, Laying, curve_chains, turn
 from compoundkin.dimensional.curve_conditions import CurveConditions, LaidDesigns, UnlaidDesigns
 from compoundkin.dimensional.curve_likeness import coefficients, likeness, mean_distance, resampled
-from compoundkin.dimensional.tasks import Conditions, extent, read_task
+from compoundkin.dimensional.task_words import read_task
+from compoundkin.dimensional.tasks import Conditions, extent
 from compoundkin.errors import InvalidInput
 from compoundkin.files.curve_files import read_curve
 from compoundkin.synthesis.chains.mechanism_names import structure_name

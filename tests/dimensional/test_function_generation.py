@@ -7,7 +7,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.dimensional.function_generation import approached_function
-from compoundkin.dimensional.tasks import chebyshev_spacing
+from compoundkin.dimensional.task_words import chebyshev_spacing
 
 # Swing and time ratio; crank, coupler, rocker with the frame 1; the family's best least transmission angle, degrees:
 # found by a prototype that searched the family directly and measured swing and times by turning the crank.

@@ -65,7 +65,7 @@ def test_the_output_of_a_random_linkage_is_found_again(number: int, part: str) -
     assert missed(answer, *pairs.T) == pytest.approx(best.error, rel=1e-3, abs=1e-9)
 
 
-@pytest.mark.parametrize("linkage", ["four-bar", "slider-crank"])
+@pytest.mark.parametrize("linkage", ["four-bar", pytest.param("slider-crank", marks=pytest.mark.full)])
 def test_a_swing_with_two_dwells_is_within_a_degree_or_two(linkage: str) -> None:
     """A rise of 120 degrees by a cycloid, a dwell of 60, a return, a dwell; a transmission angle of 25 degrees."""
     s = np.rad2deg(TURN) % 180.0 / 120.0

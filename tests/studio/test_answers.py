@@ -395,6 +395,8 @@ def test_a_document_in_json_stays_one() -> None:
 
 def test_a_drawing_gets_a_unit_and_loses_it_again() -> None:
     text = edited(START, *FOUR_BAR)
+    for unit in structure(text)["units"]:
+        assert structure(edited(text, {"do": "unit", "unit": unit}))["unit"] == unit
     inches = edited(text, {"do": "unit", "unit": "in"})
     assert (loads(inches).unit, structure(inches)["unit"]) == ("in", "in")
     assert lengths(inches) == lengths(text)

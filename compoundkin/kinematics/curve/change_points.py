@@ -472,7 +472,8 @@ def near_groups(curve: ConfigurationCurve) -> set[int]:
     """Return the groups that come near a limit position somewhere along the path."""
     upto = 1 + max((k for k, solver in enumerate(curve.solving_order.solvers) if solver.modes_may_meet), default=-1)
     found: set[int] = set()
-    samples = curve.path.samples_of_a_turn if not curve.flips and not curve.paths else curve.path.samples
+    of_a_turn = not curve.flips and all(path.repeats and path.repeats.turns == 1 for path in curve.paths.values())
+    samples = curve.path.samples_of_a_turn if of_a_turn else curve.path.samples
     for _, _, margins in _margins(curve, upto, samples) if upto else ():
         found |= {k for k, margin in margins.items() if np.any(margin < NEAR)}
         sines = {k: np.sqrt(np.abs(np.atleast_2d(margin))) for k, margin in margins.items() if k not in found}

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from math import lcm
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from compoundkin.base.arrays import Number
+from compoundkin.base.arrays import TURN, Number
 from compoundkin.base.continuation import StepLengths, StepResult, trace_paths
 from compoundkin.kinematics.block import Block, poses_at
 from compoundkin.kinematics.curve.driver_path import CLOSE, DriverPath
@@ -22,13 +23,30 @@ from compoundkin.kinematics.solving_order import Choice, SolvingOrder, run
 LONGEST = 6.0
 
 
+class Repeats(NamedTuple):
+    """Where a path is the same again: after so many `turns` of the driver, `length` places from `start` on.
+
+    States have `gone` by whole turns then, (designs, 3 n).
+    """
+
+    turns: int
+    start: float
+    length: float
+    gone: Number
+
+    def within(self, designs: Number, s: Number) -> tuple[Number, Number]:
+        """Return places in the part of a path that is repeated, and by how much states differ from those there."""
+        times = np.floor((s - self.start) / self.length)
+        return s - times * self.length, times[..., None] * self.gone[designs]
+
+
 @dataclass(frozen=True)
 class GroupPath:
     """The tracked states of one group.
 
     Its nodes are `s` (designs, nodes), in order and padded with infinity, the states (designs, nodes, 3 n), with their
     slopes by s, and the reach (designs, 2) of s within which each design was tracked. `side` (designs,) is the sign of
-    the Jacobian, `returns` are paths after gaps.
+    the Jacobian, `returns` are paths after gaps. `repeats` tells where it is the same again.
     """
 
     s: Number
@@ -37,6 +55,7 @@ class GroupPath:
     reach: Number
     side: Number
     returns: tuple[GroupPath, ...] = ()
+    repeats: Repeats | None = None
 
     @cached_property
     def _last(self) -> Number:
@@ -59,6 +78,9 @@ class GroupPath:
 
     def _seeds(self, designs: Number, s: Number) -> Number:
         low, high = self.reach[designs, 0], self.reach[designs, 1]
+        is_reached, gone = (s >= low) & (s <= high), None
+        if self.repeats is not None:
+            s, gone = self.repeats.within(designs, s)
         last = self._last[designs]
         i = np.clip(self._node(designs, s), 0, np.maximum(last - 1, 0))
         j = np.minimum(i + 1, np.maximum(last, 0))
@@ -72,7 +94,8 @@ class GroupPath:
             + t * t * (3 - 2 * t) * self.states[designs, j]
             - t * t * (1 - t) * h * self.slopes[designs, j]
         )
-        return np.where(((s >= low) & (s <= high))[..., None], out, np.nan)
+        out = out if gone is None else out + gone
+        return np.where(is_reached[..., None], out, np.nan)
 
     def _node(self, designs: Number, s: Number) -> Number:
         """Return the index of the last node that is not after a place, or the first one."""
@@ -102,6 +125,10 @@ class Followed(Protocol):
     @property
     def paths(self) -> Mapping[int, GroupPath]:
         """The groups that are followed already."""
+
+    @property
+    def flips(self) -> Mapping[int, Number]:
+        """Where groups change their signs."""
 
     def run(self, part: Inputs, order: int, places: Number, designs: Number, upto: int | None = None) -> Block:
         """Solve a block of inputs, up to a group."""
@@ -188,7 +215,7 @@ def followed_path(
 ) -> GroupPath:
     """Follow a group from its states, each at its own place, to both ends of the path, or of what earlier groups reach.
 
-    `ways` are what surrounds it on the way ahead and back.
+    `ways` are what surrounds it on the way ahead and back. A path of many turns is followed until it repeats itself.
     """
     path = curve.path
     first, last = path.ends
@@ -200,14 +227,59 @@ def followed_path(
         low, high = max(low, first), min(high, last)
         stops = np.concatenate([[low], stops[(stops > low) & (stops < high)], [high]]) if low < high else at[:1]
     way_on, way_back = ways or both_ways(curve)
-    ahead, back = (
-        _march(way_on, way_back, k, state).go(at, stops),
-        _march(way_back, way_on, k, state).go(at, stops[::-1]),
-    )
+    is_ahead = bool(last - path.home >= path.home - first)
+    on, toward, way = (way_on, way_back, stops) if is_ahead else (way_back, way_on, stops[::-1])
+    longer, other = _march(on, toward, k, state), _march(toward, on, k, state)
+    repeats = _repeats(curve, k, at, longer, way)
+    if repeats is not None:
+        reach = np.tile([first - 4.0 * CLOSE, last + 4.0 * CLOSE], (len(at), 1))
+        return replace(_joined(reach, longer.first_side, longer.nodes), repeats=repeats)
+    # what was marched meanwhile is gone on with, or ended; where some designs did and some not, all begin anew
+    if longer.nodes and longer.alive.any() and not longer.alive.all():
+        longer = _march(on, toward, k, state)
+    if not longer.nodes or longer.alive.all():
+        longer.go(longer.here if longer.nodes else at, way)
+    other.go(at, way[::-1])
+    ahead, back = (longer, other) if is_ahead else (other, longer)
     # a change point at an end of the path is solved just beyond it
     reach = np.stack([_beyond(back.reached, first, -CLOSE), _beyond(ahead.reached, last, CLOSE)], axis=1)
     # in order along the path: at a knot the slope of the way to it comes first, then that of the way on
     return _joined(reach, ahead.first_side, [*back.nodes[::-1], *ahead.nodes])
+
+
+# A path of more turns than this is looked at whether it repeats itself, after so many at most.
+FEW_TURNS, MOST_TURNS = 2.0, 6
+# States nearer to each other than this (of the size, or radians) are one: rounding of a march of some turns.
+RETURNED = 1e-9
+
+
+def _repeats(curve: Followed, k: int, at: Number, march: GroupMarch, way: Number) -> Repeats | None:
+    """March some turns of the only driver, where its path has many; return how the group's path repeats itself, if so.
+
+    All that surrounds the group must do so too: earlier groups keep their signs, or repeat themselves. Where it is back
+    at its first state, which is no singular one, it can but go the same way again, and has come by it. The march stays
+    where it has come to; its `way` are all stops in its sense.
+    """
+    path, before = curve.path, [each.repeats for n, each in curve.paths.items() if n < k]
+    (first, last), home, far = path.ends, path.home, float(abs(way[-1] - path.home))
+    if last - first <= FEW_TURNS * path.period or np.any(at != home) or any(n < k for n in curve.flips):
+        return None
+    origin, done, step = march.state.copy(), 0, lcm(*(0 if one is None else one.turns for one in before))
+    away = np.abs(way - home) * np.sign((way[-1] - home) * (way - home))
+    while 0 < step <= MOST_TURNS - done and (done + step) * path.period <= far:
+        begin, end = (home + np.sign(way[-1] - home) * turns * path.period for turns in (done, done + step))
+        inside = (away > done * path.period) & (away < (done + step) * path.period - CLOSE)
+        march.go(np.full(len(at), begin), np.append(way[inside], end))
+        if not np.all(march.alive & (march.side[:, 0] == march.first_side) & (march.first_side != 0.0)):
+            return None
+        done += step
+        moved = march.state - origin
+        gone = np.where(march.lengths, 0.0, TURN * np.round(moved / TURN))
+        if np.abs((moved - gone) * march.weights).max() <= RETURNED:
+            if end < home:
+                return Repeats(done, end, home - end, -gone[:, 0])
+            return Repeats(done, home, end - home, gone[:, 0])
+    return None
 
 
 def _march(onward: KnownSurroundings, toward: KnownSurroundings, k: int, state: Number) -> GroupMarch:

@@ -8,9 +8,10 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import count_phrase
+from compoundkin.dimensional.burmester_curve import BurmesterCurve
 from compoundkin.dimensional.candidates import POINT
 from compoundkin.dimensional.cognates import Cognates
-from compoundkin.dimensional.dyads import BurmesterCurve, Dyads
+from compoundkin.dimensional.dyads import Dyads
 from compoundkin.dimensional.synthesis import Answer
 from compoundkin.dimensional.tasks import CurveTask, MixedTask, PointTask, PoseTask, Task, TimedPointTask, extent
 from compoundkin.kinematics import Motion

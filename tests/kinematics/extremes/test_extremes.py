@@ -143,10 +143,10 @@ ONE_WAY = {"jaw-crusher-loaded", "shaper-cutting-force"}
 
 @each(CHOSEN)
 def test_extremes_do_not_depend_on_the_poses(name: str) -> None:
-    """At the file's own step, and with nine poses between every two: to 1e-6 of the range."""
+    """At the file's own step, and with four poses between every two: to 1e-6 of the range."""
     coarse = solved(name)
     names = tuple(shown(coarse))
-    fine = finer(coarse, 10)
+    fine = finer(coarse, 5)
     close = 1e-5 if name in ONE_WAY else 1e-6
     for one, other in zip(extremes(coarse, *names), extremes(fine, *names), strict=True):
         # what is constant has rounding for its range: next to change points some eleven digits are right

@@ -128,7 +128,7 @@ def test_random_mechanisms_agree_in_all_numbers(seed, kinds):
     assert (found.finite, found.redundant, found.determined) == (1, 0, 1)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=examples(9), deadline=None)
 @given(st.floats(0, 6.28), st.complex_numbers(max_magnitude=10), st.floats(0.1, 20), st.permutations(range(9)))
 def test_moving_scaling_and_reordering_change_nothing(angle, shift, scale, order):
     plain = bars("dixon1_K33", "ae")
