@@ -312,6 +312,8 @@ class JoinedBlocks:
     def __init__(self, designs: int, poses: int) -> None:
         self.shape = (designs, poses)
         self.failed = np.empty(self.shape, dtype=np.int32)
+        # a block of all is kept as it is
+        self._all: Mapping[str, Pose] | None = None
         self._fixed: dict[str, bool] = {}
         # by link and z, u or theta: the coefficients over all blocks
         self._found: dict[tuple[str, str], list[Number]] = {}
@@ -319,6 +321,9 @@ class JoinedBlocks:
     def take(self, block: Block, designs: slice, poses: slice) -> None:
         """Add a block."""
         self.failed[designs, poses] = block.failed
+        if block.shape == self.shape:
+            self._all = block.world
+            return
         self._fixed.update({link: pose is FIXED for link, pose in block.world.items()})
         parts = dict(_series(block.world))
         if not self._found:
@@ -337,6 +342,8 @@ class JoinedBlocks:
 
     def poses(self) -> dict[str, Pose]:
         """Return the links' poses over all blocks."""
+        if self._all is not None:
+            return dict(self._all)
 
         def gathered(link: str, name: str) -> Series:
             return Series(tuple(self._found[link, name]))
