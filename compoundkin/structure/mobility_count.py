@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from compoundkin.base.display import count_phrase
 from compoundkin.base.poses import Pose
@@ -161,7 +162,7 @@ class Group:
     class_: int
     order: int
 
-    @property
+    @cached_property
     def links(self) -> tuple[str, ...]:
         """All its links."""
         return tuple(link for body in self.bodies for link in body.links)

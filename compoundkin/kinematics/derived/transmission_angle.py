@@ -47,11 +47,12 @@ def _transmission(motion: HasQuantities, link: str) -> Number:
 
 
 def block_of(motion: HasQuantities, solver: GroupSolver) -> Block:
-    """Return the poses as the block in which a group is solved."""
-    poses = {name: pose.trimmed(0) for name, pose in motion.poses.items()}
+    """Return the poses of a group, and of what it is attached to, as the block in which it is solved."""
+    group = solver.group
+    poses = {name: motion.poses[name].trimmed(0) for name in (*group.links, *group.uses)}
     local: Mapping[str, Pose] = {
         name: poses[body.links[0]].inverse().compose(poses[name])
-        for body in solver.group.bodies
+        for body in group.bodies
         for name in body.links[1:]
     }
     return Block(motion.grid.failed.shape, motion.inputs.ends, poses, local, 0)

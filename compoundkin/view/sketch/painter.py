@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from compoundkin.base.arrays import Number
 from compoundkin.base.curves.samples import convex_hull
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.outline_shapes import OutlineShape
@@ -110,9 +111,16 @@ class Painter:
         return {"plate": "frame-face frame", "track": "frame-track", "pitch": "hatch"}.get(kind, "frame")
 
     @cached_property
+    def carried(self) -> Number:
+        """The places on the picture of points that carry something, without what traces them."""
+        if self.whole is not None:
+            return self.whole.carried
+        return np.array([untraced(self.window.at(p)) for p in self.scene.carried.values()], dtype=complex)
+
+    @cached_property
     def middle(self) -> complex:
         """The middle on the picture of points that carry something."""
-        return complex(np.mean([self.window.at(p) for p in self.scene.carried.values()] or [0j]))
+        return complex(np.mean(self.carried)) if len(self.carried) else 0j
 
     @cached_property
     def block(self) -> tuple[float, float]:
@@ -293,7 +301,8 @@ def link_body(scene: Scene, window: Window, link: str, extra: Places = ()) -> tu
         return ()
     group = scene.groups[link]
     among = (*_own(scene, window, link), *extra)
-    corners = tuple(link_corners(among))
+    # the points among which they are tell how they follow from dimensions
+    corners = untraced(tuple(link_corners(among)))
     if len(corners) < 2:
         return ()
     if len(corners) == 2:
@@ -320,17 +329,22 @@ def link_corners(points: Places) -> list[complex]:
     >>> link_corners([0j, 20 + 0j, 10 + 1j, 10 + 0j])
     [0j, (20+0j)]
     """
-    found: list[complex] = []
+    # a choice among them: numbers are enough
+    found, places = list[complex](), list[complex]()
     for point in points:
-        if all(abs(point - other) > SAME for other in found):
+        place = untraced(point)
+        if all(abs(place - other) > SAME for other in places):
             found.append(point)
+            places.append(place)
     if len(found) < 3:
         return found
-    first = max(found, key=lambda p: abs(p - found[0]))
-    second = max(found, key=lambda p: abs(p - first))
-    e = (second - first) / abs(second - first)
-    if max(abs((np.conjugate(e) * (p - first)).imag) for p in found) < ON_LINE:
-        return [second, first]
+    indices = range(len(found))
+    first = max(indices, key=lambda k: abs(places[k] - places[0]))
+    second = max(indices, key=lambda k: abs(places[k] - places[first]))
+    way = places[second] - places[first]
+    e = way / abs(way)
+    if max(abs((e.conjugate() * (p - places[first])).imag) for p in places) < ON_LINE:
+        return [found[second], found[first]]
     return convex_hull(found)
 
 
@@ -394,8 +408,9 @@ def _free_side(painter: Painter, letter: str, at: complex) -> complex:
         if link != FRAME:
             others = (untraced(painter.place(link, p)) for k, p in painter.scene.points[link].items() if k != letter)
             away += [unit_direction(p - at) for p in others if abs(p - at) > PIN]
-    near = [painter.window.at(untraced(p)) for k, p in painter.scene.carried.items() if k != letter]
-    away += [unit_direction(p - at) for p in near if PIN < abs(p - at) < 2.0 * PIVOT]
+    ways = painter.carried - at
+    far = np.abs(ways)
+    away += [unit_direction(way) for way in ways[(far > PIN) & (far < 2.0 * PIVOT)].tolist()]
 
     def blocked(down: complex) -> float:
         share = max([(np.conjugate(down) * e).real for e in away], default=0.0)

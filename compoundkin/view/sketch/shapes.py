@@ -10,6 +10,7 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
+from compoundkin.view.sketch.traced_numbers import untraced
 
 HATCH = 6.0  # distance of the strokes of a hatching
 HEAD = 10.0  # length of an arrow's head
@@ -208,7 +209,8 @@ def hatching(start: complex, stop: complex, side: float) -> Strokes:
     count = np.maximum(2.0, np.rint(abs(line) / HATCH))
     slant = e * SLANT.real + e * 1j * side * SLANT.imag
     row = StrokeRow(start + line * 0.7 / count, line / count, slant * HATCH, count)
-    return Strokes(row.lines, "hatch", row)
+    # the row tells how its strokes follow from dimensions
+    return Strokes(StrokeRow(*untraced(tuple(row))).lines, "hatch", row)
 
 
 def arrow_shapes(start: complex, stop: complex, style: str) -> tuple[Shape, ...]:
