@@ -165,8 +165,11 @@ class Joints:
         >>> Joints(("a", "b"), (Joint((0, 1)),)).names([1, 2])
         ('b', 'a-b')
         """
-        named = (*self.links, *("-".join(self.links[k] for k in joint.links) for joint in self.joints))
-        return tuple(named[k] for k in numbers)
+        count = len(self.links)
+        return tuple(
+            self.links[k] if k < count else "-".join(self.links[link] for link in self.joints[k - count].links)
+            for k in numbers
+        )
 
     def blocks(self) -> tuple[tuple[int, ...], ...]:
         """Return the links of each part that has a loop of its own."""
