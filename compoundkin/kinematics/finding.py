@@ -14,6 +14,8 @@ from compoundkin.kinematics.motion import Motion
 
 # So many times the estimate of its error a residual may be: it adds the errors of several links.
 LEFT = 10.0
+# A pose slower than this part of the motion's fastest is judged by that: a mechanism at rest has no own scale.
+SLOWEST = 1e-6
 
 
 @dataclass(frozen=True)

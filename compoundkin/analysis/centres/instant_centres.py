@@ -26,6 +26,7 @@ from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggesti
 from compoundkin.base.poses import FIXED, Pose
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.driver_values import fit
+from compoundkin.kinematics.finding import SLOWEST
 from compoundkin.model.geometry import FRAME
 from compoundkin.model.pairs.contract import Line
 
@@ -379,8 +380,6 @@ def solved_twists(motion: Motion, scale: OwnCoordinates) -> Number:
 
 # Below this conditioning (rounding becomes 1e-10) a centre is given, but proves nothing to 1e-9.
 LEAST_CONDITIONING = 1e-6
-# A pose slower than this part of the motion's fastest is judged by that: a mechanism at rest has no own scale.
-SLOWEST = 1e-6
 
 
 @dataclass(frozen=True, repr=False)

@@ -15,14 +15,12 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from compoundkin.analysis.centres import instant_centres
-from compoundkin.analysis.centres.instant_centres import SLOWEST
 from compoundkin.base.arrays import Number, wrapped
 from compoundkin.base.errors import NotDetermined
 from compoundkin.base.newton import elementwise_largest
 from compoundkin.base.series import Series
 from compoundkin.kinematics import Motion
-from compoundkin.kinematics.finding import Finding, rounded_by, worst
+from compoundkin.kinematics.finding import SLOWEST, Finding, rounded_by, worst
 from compoundkin.model.attributes import OF_POINTS
 from compoundkin.model.pairs import Pair
 from compoundkin.model.pairs.contract import as_turn_counting, constraint_scales
@@ -204,6 +202,8 @@ def centre_findings(motion: Motion) -> Iterator[Finding]:
     still = motion.order < 1 or not motion.inputs.drives or not motion.regular.any()
     if still or len(motion.mechanism.links) > MOST_LINKS:
         return
+    from compoundkin.analysis.centres import instant_centres  # many links do without
+
     try:
         centres = instant_centres(motion)
     except NotDetermined:

@@ -51,9 +51,7 @@ def block_of(motion: HasQuantities, solver: GroupSolver) -> Block:
     group = solver.group
     poses = {name: motion.poses[name].trimmed(0) for name in (*group.links, *group.uses)}
     local: Mapping[str, Pose] = {
-        name: poses[body.links[0]].inverse().compose(poses[name])
-        for body in group.bodies
-        for name in body.links[1:]
+        name: poses[body.links[0]].inverse().compose(poses[name]) for body in group.bodies for name in body.links[1:]
     }
     return Block(motion.grid.failed.shape, motion.inputs.ends, poses, local, 0)
 

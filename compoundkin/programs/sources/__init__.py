@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
-from compoundkin.programs.sources.c_text import CLanguage
-from compoundkin.programs.sources.javascript_text import JavaScriptLanguage
-from compoundkin.programs.sources.matlab_text import MatlabLanguage
-from compoundkin.programs.sources.python_text import PythonLanguage
-from compoundkin.programs.sources.written_program import Language
+from compoundkin.model.fields import LateKinds
 
-LANGUAGES: Mapping[str, Language] = {
-    one.name: one for one in (CLanguage(), PythonLanguage(), JavaScriptLanguage(), MatlabLanguage())
-}
+if TYPE_CHECKING:
+    from compoundkin.programs.sources.written_program import Language
+
+LANGUAGES: Mapping[str, type[Language]] = LateKinds(
+    __name__,
+    {
+        "c": "c_text.CLanguage",
+        "python": "python_text.PythonLanguage",
+        "javascript": "javascript_text.JavaScriptLanguage",
+        "matlab": "matlab_text.MatlabLanguage",
+    },
+)

@@ -23,7 +23,8 @@ class CLanguage:
 
     name = "c"
 
-    def text(self, program: WrittenProgram) -> str:
+    @staticmethod
+    def text(program: WrittenProgram) -> str:
         """Return a file to compile, or to include."""
         statements = StatementWriter(program, _spelled(program.name), _number, ("0", "1")).written()
         return "\n".join((*_head(program), *_functions(program, statements), *_body(program, statements), *_FOOT, ""))

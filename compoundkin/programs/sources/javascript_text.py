@@ -30,7 +30,8 @@ class JavaScriptLanguage:
 
     name = "javascript"
 
-    def text(self, program: WrittenProgram) -> str:
+    @staticmethod
+    def text(program: WrittenProgram) -> str:
         """Return a script; Node may require it too."""
         statements = StatementWriter(program, _SPELLED, _number, ("false", "true")).written()
         return "\n".join((*_head(program), *_functions(statements), *_body(program, statements), *_foot(program), ""))

@@ -65,7 +65,8 @@ class MatlabLanguage:
 
     name = "matlab"
 
-    def text(self, program: WrittenProgram) -> str:
+    @staticmethod
+    def text(program: WrittenProgram) -> str:
         """Return a function file."""
         statements = StatementWriter(program, _SPELLED, _number, ("false", "true")).written()
         body = tuple(_body(program, statements))

@@ -61,7 +61,8 @@ class PythonLanguage:
 
     name = "python"
 
-    def text(self, program: WrittenProgram) -> str:
+    @staticmethod
+    def text(program: WrittenProgram) -> str:
         """Return a module."""
         statements = StatementWriter(program, _SPELLED, _number, ("False", "True")).written()
         return "\n".join((*_head(program), *_functions(statements), *_body(program, statements), ""))

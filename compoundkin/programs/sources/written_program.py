@@ -73,7 +73,8 @@ class Language(Protocol):
 
     name: str
 
-    def text(self, program: WrittenProgram) -> str:
+    @staticmethod
+    def text(program: WrittenProgram) -> str:
         """Return the text of a file that has the function and all it needs."""
 
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compoundkin.analysis.centres import Centres, instant_centres
 from compoundkin.base.arrays import Number, ascending, degrees
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.extremes import between
@@ -28,11 +27,11 @@ from compoundkin.model.attributes import (
 from compoundkin.view.page.live.live_sketch import live_sketch
 from compoundkin.view.page.markup import component_values, packed_doubles, packed_floats
 from compoundkin.view.report.pose_sample import Sample
-from compoundkin.view.sketch.centre_pictures import centre_number
 from compoundkin.view.sketch.kinematic_sketch import MovingSketch, moving_sketch
 from compoundkin.view.sketch.vectors import KINDS_OF_VECTOR, SHORTEST
 
 if TYPE_CHECKING:
+    from compoundkin.analysis.centres import Centres
     from compoundkin.view.page.force_data import DrawnForces
 
 # A page holds so many poses at most, fewer where there are many links: its data shall stay well below a megabyte.
@@ -228,6 +227,8 @@ class MotionData:
         mechanism = self.motion.mechanism
         if not self.with_centres or len(mechanism.links) > MOST_LINKS or not mechanism.drives:
             return {"centres": [], "lines": []}
+        from compoundkin.analysis.centres import instant_centres  # a page of many links has none
+
         centres = instant_centres(self.motion)
         couples = list(centres)
         found = [self._centre(centres, couple) for couple in couples]
@@ -243,6 +244,8 @@ class MotionData:
         with np.errstate(invalid="ignore"):
             packed = [packed_floats(self.of(np.where(centre.at_infinity, 0.0, c) if k == 2 else c) / self.of(length))
                       for k, c in enumerate(xyw)]  # fmt: skip
+        from compoundkin.view.sketch.centre_pictures import centre_number  # the same
+
         name = centre_number(self.sketch.scene, *couple)
         return {"name": name, "links": list(couple), "at": packed}
 

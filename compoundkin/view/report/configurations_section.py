@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import prod
+from typing import TYPE_CHECKING
 
 from compoundkin.analysis.singularity import Singularities
 from compoundkin.base.arrays import degrees, first_entry
 from compoundkin.base.errors import CompoundkinError, InvalidInput
-from compoundkin.configurations.circuit import Branch, Circuit, CircuitPlace, Limit
-from compoundkin.configurations.circuit_search import Circuits, circuits
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.configuration import Configurations
 from compoundkin.kinematics.solution import first_configuration
@@ -29,6 +28,10 @@ from compoundkin.view.report.report_data import (
 )
 from compoundkin.view.report.report_forms import Report
 from compoundkin.view.report.wording import counted, listed, number_text
+
+if TYPE_CHECKING:
+    from compoundkin.configurations.circuit import Branch, Circuit, CircuitPlace, Limit
+    from compoundkin.configurations.circuit_search import Circuits
 
 # A reader needs no more rows than this of a table; the JSON report has all.
 MOST_ROWS = 40
@@ -100,6 +103,9 @@ def assembly_sections(motion: Motion) -> tuple[Section, ...]:
         return ()
     first = {name: float(first_entry(values[0])) for name, values in motion.inputs.drives.items()}
     others = {name: value for name, value in first.items() if name != drives[0].name}
+    # late: of many groups no circuits are looked for
+    from compoundkin.configurations.circuit_search import circuits
+
     try:
         found = circuits(structure, drives[0].name, others)
     except CompoundkinError:

@@ -13,7 +13,6 @@ from compoundkin.base.arguments import check_design
 from compoundkin.base.buffers import without_collection
 from compoundkin.kinematics import Motion
 from compoundkin.kinematics.one_design import motion_of_design
-from compoundkin.view.report.centres_section import centres_sections
 from compoundkin.view.report.configurations_section import assembly_sections, singularities_section
 from compoundkin.view.report.groups_section import drivers_section, solving_section
 from compoundkin.view.report.outputs_section import equivalent_section, moving_sections
@@ -178,6 +177,9 @@ def centres_report(motion: Motion, design: int = 0) -> Report:
     motion = motion_of_design(motion, design)
     sample = Sample(motion)
     closed = bool(sample.assembled[0])
+    # late: the report on a motion has no centres
+    from compoundkin.view.report.centres_section import centres_sections
+
     # in a report on the whole motion the section of its own gaps has the key "gaps"
     sections = centres_sections(sample) if closed else gaps_sections(sample, "centres")
     return Report(motion.mechanism.title, sections, Outcome(True, 1, int(closed)), motion)

@@ -66,12 +66,6 @@ from compoundkin.view.sketch.shapes import (
     shape_corners,
     sheet,
 )
-from compoundkin.view.sketch.sketch_dimensions import (
-    dimension_shapes,
-    offset_shapes,
-    room_for_dimensions,
-    room_for_offsets,
-)
 from compoundkin.view.sketch.sketch_style import LETTER, LINE
 from compoundkin.view.sketch.symbol_shapes import driver_arrows, pair_marks, wedge_ends
 from compoundkin.view.sketch.traced_numbers import as_place
@@ -173,6 +167,14 @@ def draw_sketch(what: Drawable, options: PictureOptions) -> Picture:
     others = _ghosts(scene, options.ghosts)
     places = _centre_places(scene) if options.centres else []
     plain = window_on(scene, others, traced, places)
+    if options.dimensions:
+        # late: few sketches have numbers
+        from compoundkin.view.sketch.sketch_dimensions import (
+            dimension_shapes,
+            offset_shapes,
+            room_for_dimensions,
+            room_for_offsets,
+        )
     if options.dimensions and (larger := room_for_dimensions(Painter(scene, plain))) > 1.0:
         plain = window_on(scene, others, traced, places, larger)
     window, scales = _scaled(scene, plain, vectors)

@@ -365,8 +365,9 @@ class ReproducedValues:
     def _agree(self, found: Number, known: Number) -> Number:
         """Return which rows (count, poses) agree."""
         size = np.abs(np.where(np.isfinite(known), known, 0.0)).max(axis=1, keepdims=True, initial=1e-300)
-        near = np.isclose(found, known, rtol=0.0, atol=AGREES * size + 1e-12, equal_nan=True)
-        return near.all(axis=1)
+        near: Number = np.isclose(found, known, rtol=0.0, atol=AGREES * size + 1e-12, equal_nan=True)
+        every: Number = near.all(axis=1)
+        return every
 
 
 def _continuous(angles: Number) -> Number:
