@@ -105,6 +105,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     items[:] = [item for part in filled(parts, rest) for item in part]
 
 
+def pytest_collection_finish() -> None:
+    """Let the collector of garbage alone with what is kept to the end anyway."""
+    gc.freeze()
+
+
 def filled(parts: list[list[pytest.Item]], rest: list[pytest.Item]) -> list[list[pytest.Item]]:
     """Parts with as many tests each, as nearly as can be."""
     size = (sum(map(len, parts)) + len(rest)) // len(parts)
