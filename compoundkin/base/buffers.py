@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
 from math import prod
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,38 +28,52 @@ def arrays_of_one_buffer(shapes: Iterable[tuple[tuple[int, ...], np.dtype[Number
     >>> one.shape, two.dtype, one.base is two.base
     ((1, 3), dtype('float64'), True)
     """
-    shapes = tuple(shapes)
-    rooms = [-(-prod(shape) * dtype.itemsize // LINE) * LINE for shape, dtype in shapes]
-    buffer = np.empty(sum(rooms) + LINE, dtype=np.uint8)
-    start = -buffer.__array_interface__["data"][0] % LINE
-    found = []
-    for (shape, dtype), room in zip(shapes, rooms, strict=True):
-        found.append(np.ndarray(shape, dtype, buffer, start))
-        start += room
-    return found
+    return BufferLayout.of(tuple(shapes)).arrays()
 
 
-def empty_arrays(shapes: Sequence[tuple[tuple[int, ...], np.dtype[Number]]]) -> list[Number]:
-    """Return empty arrays of these shapes and types.
+class BufferLayout(NamedTuple):
+    """Where arrays of some shapes and types lie: at these bytes of one piece of memory, or in memory of their own."""
 
-    Large ones lie in one piece, which is kept for the next ones when it is freed.
+    shapes: Sequence[tuple[tuple[int, ...], np.dtype[Number]]]
+    places: Sequence[int | None]
+    size: int
 
-    >>> [one.shape for one in empty_arrays([((1, 3), np.dtype(complex)), ((2, 1), np.dtype(float))])]
-    [(1, 3), (2, 1)]
-    """
-    if not are_large(shapes):
-        return [np.empty(shape, dtype) for shape, dtype in shapes]
-    keep_freed_memory()
-    return arrays_of_one_buffer(shapes)
+    @classmethod
+    def of(cls, shapes: Sequence[tuple[tuple[int, ...], np.dtype[Number]]], least: int = 0) -> BufferLayout:
+        """Return the layout in which arrays of so many bytes at least lie in one piece."""
+        places: list[int | None] = []
+        size = 0
+        for shape, dtype in shapes:
+            own = prod(shape) * dtype.itemsize
+            places.append(size if own >= least else None)
+            size += -(-own // LINE) * LINE if own >= least else 0
+        return cls(shapes, places, size)
 
+    @classmethod
+    def of_results(cls, shapes: Sequence[tuple[tuple[int, ...], np.dtype[Number]]]) -> BufferLayout:
+        """Return the layout for arrays that are made again and again: one large piece, which is kept when it is freed.
 
-def are_large(shapes: Iterable[tuple[tuple[int, ...], np.dtype[Number]]]) -> bool:
-    """Tell whether arrays of these shapes and types lie in one piece.
+        >>> shapes = [((1, 8_000), np.dtype(complex)), ((1, 8_000), np.dtype(float)), ((1, 1), np.dtype(float))]
+        >>> BufferLayout.of_results(shapes).places, [one.shape for one in BufferLayout.of_results(shapes).arrays()]
+        ([0, 128000, None], [(1, 8000), (1, 8000), (1, 1)])
+        """
+        sizes = [prod(shape) * dtype.itemsize for shape, dtype in shapes]
+        if sum(sizes) < LARGE:
+            return cls.of(shapes, LARGE)
+        keep_freed_memory()
+        # a single array gains nothing by a piece around it
+        return cls.of(shapes, LINE if sum(size >= LINE for size in sizes) > 1 else sum(sizes) + 1)
 
-    >>> are_large([((1, 36_000), np.dtype(float))]), are_large([((1, 361), np.dtype(complex))])
-    (True, False)
-    """
-    return sum(prod(shape) * dtype.itemsize for shape, dtype in shapes) >= LARGE
+    def arrays(self) -> list[Number]:
+        """Return empty arrays."""
+        if not self.size:
+            return [np.empty(shape, dtype) for shape, dtype in self.shapes]
+        buffer = np.empty(self.size + LINE, np.uint8)
+        start = -buffer.__array_interface__["data"][0] % LINE
+        return [
+            np.empty(shape, dtype) if place is None else np.ndarray(shape, dtype, buffer, start + place)
+            for (shape, dtype), place in zip(self.shapes, self.places, strict=True)
+        ]
 
 
 @cache

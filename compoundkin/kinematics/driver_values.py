@@ -221,9 +221,9 @@ def timed(
     ):
         # uniform motion: what the polynomial below is then
         value, speed = given[:2]
-        rate = np.empty(times.shape)
-        rate.fill(speed)
-        return speed * times + value, rate, np.zeros(times.shape), given[3]
+        moved = speed * times
+        moved += value
+        return moved, *given[1:]
     for what, value in zip(asked, given, strict=True):
         if type(value) is not float and np.shape(value)[-1:] > (1,):
             text = f"its {what} {'vary' if what == 'values' else 'varies'} along the motion, which the times do already"

@@ -9,14 +9,13 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 from math import prod
-from types import MappingProxyType
 from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
 from compoundkin.base.arguments import planar_numbers, real_numbers
 from compoundkin.base.arrays import Number
-from compoundkin.base.buffers import are_large, empty_arrays
+from compoundkin.base.buffers import BufferLayout
 from compoundkin.base.display import ShortRepr, short_repr
 from compoundkin.base.errors import InvalidInput, Problem, suggestion
 from compoundkin.kinematics.driver_values import Inputs, by_name, fit, inputs, times_of
@@ -27,7 +26,16 @@ from compoundkin.programs.backends import runner_of
 from compoundkin.programs.backends.runner import Runner
 from compoundkin.programs.dimensions import FreeDimension, drives_of_call
 from compoundkin.programs.graph.flat_program import BY_DESIGN, BY_POSE, Carried, FlatProgram, flat_program
-from compoundkin.programs.graph.operation_graph import DRIVE, INPUT, PARAMETER, SEED, STEP, InputNumber, OperationGraph
+from compoundkin.programs.graph.operation_graph import (
+    BEFORE,
+    DRIVE,
+    INPUT,
+    PARAMETER,
+    SEED,
+    STEP,
+    InputNumber,
+    OperationGraph,
+)
 
 FLOAT, COMPLEX = np.dtype(float), np.dtype(complex)
 
@@ -101,7 +109,8 @@ class CallNumbers:
         """Return how each input varies; inputs from outside the call vary by both."""
         known = {given: _stratum(array) for given, array in self.given.items()}
         inputs = (node.given for node in graph.nodes if node.operation == INPUT and node.given)
-        return {given: known.get(given, BY_DESIGN | BY_POSE) for given in inputs}
+        places = {one: one._replace(part="0") if one.part == BEFORE else one for one in inputs}
+        return {given: known.get(place, BY_DESIGN | BY_POSE) for given, place in places.items()}
 
     def reshaped(self, shape: tuple[int, ...]) -> CallNumbers:
         """Return the same numbers in a shape with which theirs broadcasts."""
@@ -117,8 +126,7 @@ class CallNumbers:
 
     def arrays(self, flat: FlatProgram) -> list[Any]:
         """Return the arrays that a program reads."""
-        carried = {one.given for one in flat.carried}
-        return [None if k in carried else self.given[flat.graph.nodes[k].given] for k in flat.inputs]  # type: ignore[index]
+        return [self.given[flat.graph.nodes[k].given] for k in flat.given]  # type: ignore[index]
 
 
 def _stratum(array: Number) -> int:
@@ -250,8 +258,9 @@ def _are_plain(out: Mapping[str, Any], outputs: Mapping[str, bool], shape: tuple
     return len(places) == len(out)
 
 
-# Contiguous, aligned and writeable, as NumPy's interface numbers them.
-PLAIN_FLAGS = 0x1 | 0x100 | 0x400
+# Contiguous and aligned, as NumPy's interface numbers them, and writeable.
+READABLE_FLAGS = 0x1 | 0x100
+PLAIN_FLAGS = READABLE_FLAGS | 0x400
 
 
 def _can_hold(array: Any, is_vector: bool | None, shape: tuple[int, ...]) -> bool:
@@ -312,7 +321,7 @@ class ReadyProgram(ShortRepr, Generic[Name]):
         return cls(flat, runner_of(flat, backend), nodes)
 
     def run(
-        self, numbers: CallNumbers, threads: int = 1, given: Mapping[Name, Number] = MappingProxyType({})
+        self, numbers: CallNumbers, threads: int = 1, given: Mapping[Name, Number] | None = None
     ) -> dict[Name, Number]:
         """Compute all results, (1 or designs, 1 or poses) each; arrays `given`, designs x poses, are written."""
         found = self.computed(numbers.arrays(self.flat), numbers.extent, threads, given)
@@ -323,7 +332,7 @@ class ReadyProgram(ShortRepr, Generic[Name]):
         inputs: Sequence[Any],
         extent: tuple[int, int],
         threads: int = 1,
-        given: Mapping[Name, Number] = MappingProxyType({}),
+        given: Mapping[Name, Number] | None = None,
     ) -> list[Number]:
         """Compute all results from the arrays that the program reads; they are in the order of `nodes`."""
         key = (extent, *given) if given else extent
@@ -331,8 +340,8 @@ class ReadyProgram(ShortRepr, Generic[Name]):
         if layout is None:
             if len(self._layouts) >= LAYOUTS_KEPT:
                 self._layouts.clear()
-            layout = self._layouts[key] = ResultLayout.of(self, extent, given)
-        arrays = layout.empty()
+            layout = self._layouts[key] = ResultLayout.of(self, extent, given or ())
+        arrays = layout.made.arrays()
         if given:
             made = iter(arrays)
             arrays = [given[name] if name in given else next(made) for name in self.nodes]
@@ -364,13 +373,12 @@ WHOLE: list[tuple[int, int]] = []
 class ResultLayout(NamedTuple):
     """The arrays of a program's results for designs x poses.
 
-    `made` are shapes and types of those that no caller gives. `parts` are, for each, the shapes of what is computed
+    `made` are those that no caller gives. `parts` are, for each, the shapes of what is computed
     where an array holds more; else WHOLE of a vector, None of a number.
     """
 
-    made: list[tuple[tuple[int, ...], np.dtype[Number]]]
+    made: BufferLayout
     parts: list[list[tuple[int, int]] | None]
-    are_large: bool
 
     @classmethod
     def of(cls, program: ReadyProgram[Any], extent: tuple[int, int], given: Collection[Any]) -> ResultLayout:
@@ -383,8 +391,4 @@ class ResultLayout(NamedTuple):
             parts.append(shapes if narrow else WHOLE if len(nodes) > 1 else None)
             if name not in given:
                 made.append((whole, COMPLEX if len(nodes) > 1 else FLOAT))
-        return cls(made, parts, are_large(made))
-
-    def empty(self) -> list[Number]:
-        """Return the arrays that are made."""
-        return empty_arrays(self.made) if self.are_large else [np.empty(shape, kind) for shape, kind in self.made]
+        return cls(BufferLayout.of_results(made), parts)

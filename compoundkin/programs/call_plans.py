@@ -8,10 +8,9 @@ them is read in full again, which reports it. A plan is kept only if it reads wh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from itertools import takewhile
 from math import copysign, prod
-from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -22,8 +21,16 @@ from compoundkin.kinematics.driver_values import RATES, fit, timed
 from compoundkin.kinematics.solution import COUNTED
 from compoundkin.model.attributes import RATES as RATE_WORDS
 from compoundkin.model.elements import Drive
-from compoundkin.programs.call_numbers import COMPLEX, FLOAT, Call, CallNumbers, ReadyProgram, parameter_inputs
-from compoundkin.programs.graph.operation_graph import BEFORE, DRIVE, InputNumber
+from compoundkin.programs.call_numbers import (
+    COMPLEX,
+    FLOAT,
+    READABLE_FLAGS,
+    Call,
+    CallNumbers,
+    ReadyProgram,
+    parameter_inputs,
+)
+from compoundkin.programs.graph.operation_graph import DRIVE, InputNumber
 from compoundkin.programs.recorded_path import PathVariants
 
 # So many plain numbers are kept as arrays, and so many plans.
@@ -57,6 +64,9 @@ class CallForm(NamedTuple):
             else:
                 numbers.append(one)
         for k, one in enumerate(numbers):
+            if one is None:
+                form.append(None)
+                continue
             kind = type(one)
             if kind is list:
                 one = numbers[k] = _array_of_list(one)
@@ -70,8 +80,6 @@ class CallForm(NamedTuple):
                     form.append(NUMBERS[dtype.type])
                 else:
                     form.append(shape if dtype is FLOAT else (complex, shape))
-            elif one is None:
-                form.append(None)
             elif kind in NUMBERS:
                 form.append(NUMBERS[kind])
             elif kind is tuple and _is_point(one) and _is_dimension(arguments, k):
@@ -105,10 +113,10 @@ def _array_of_list(values: list[Any]) -> Any:
 
 
 class CallPlans(ShortRepr):
-    """The plans of a path's calls, by their forms."""
+    """The plans of a path's calls, by their forms. Numbers that `are_kept` are copied: the caller may change his."""
 
-    def __init__(self, path: PathVariants) -> None:
-        self.path = path
+    def __init__(self, path: PathVariants, are_kept: bool = True) -> None:
+        self.path, self.are_kept = path, are_kept
         self._plans: dict[tuple[Any, ...], CallPlan] = {}
         self._arrays: dict[float, Number] = {}
 
@@ -131,7 +139,7 @@ class CallPlans(ShortRepr):
         # free numbers of laws move the drivers; seeds are found by solving
         if any(one.is_of_law for one in self.path.dimensions) or numbers.is_seeded or numbers.marches:
             return
-        plan = CallPlan(self.path, arguments, numbers, self.array)
+        plan = CallPlan(self.path, arguments, numbers, self)
         read = plan.read(form.numbers)
         if read is not None and _is_same(read.numbers(), numbers):
             if len(self._plans) >= PLANS_KEPT:
@@ -188,26 +196,23 @@ class NumberPlace(NamedTuple):
     """Where a number of a call goes: its index among them, the inputs that its parts are, its form there.
 
     An array is broadcast to the shape `whole`, where that is needed, and laid as `rows`; a plain number has no rows.
+    `is_copied` tells whether it is copied although a program can read it as it is.
     """
 
     number: int
     inputs: tuple[int, ...]
     rows: tuple[int, int] | None
     whole: tuple[int, ...] | None
+    is_copied: bool
 
-    def laid(self, array: Number) -> Number:
-        """Return a part of an array in the form of inputs, a copy: the caller may change his before it is read."""
+    def laid(self, array: Number) -> list[Number]:
+        """Return the parts of an array in the form of inputs."""
         if self.whole is not None:
             array = np.broadcast_to(array, self.whole)
-        return array.reshape(self.rows).copy()
-
-    def laid_twice(self, array: Number) -> tuple[Number, Number]:
-        """Return an array in the form of inputs, one pose late and as it is, both in the memory of one copy."""
-        copy = np.empty((1, array.shape[-1] + 1))
-        late, row = copy[:, :-1], copy[:, 1:]
-        row[...] = array.reshape(self.rows)
-        copy[0, 0] = copy[0, 1]
-        return late, row
+        is_copied = self.is_copied or array.flags.num & READABLE_FLAGS != READABLE_FLAGS
+        parts = (array.real, array.imag) if len(self.inputs) > 1 else (array,)
+        laid = [one.reshape(self.rows) for one in parts]
+        return [one.copy() for one in laid] if is_copied else laid
 
 
 class TimedDriver(NamedTuple):
@@ -248,12 +253,13 @@ class CallPlan(ShortRepr):
     """What the numbers of calls of one form are to programs.
 
     `inputs` are the inputs in their order, `shape` is that of the call's arrays, `values` are the places of drivers'
-    values among the inputs, by name. `before` are those of the values a pose before, of drivers that a call of one
-    design gives: they stand behind all inputs, in the values' own memory.
+    values among the inputs, by name. `moving` are the drivers that have a value at each pose of one design, whose
+    longest steps a program finds beside; `held` the places of those of them whose values the caller gives and results
+    keep, which a program copies beside: it reads them anyway.
     """
 
-    def __init__(self, path: PathVariants, arguments: Sequence[Any], numbers: CallNumbers, array: ArrayOf) -> None:
-        self.path, self.array = path, array
+    def __init__(self, path: PathVariants, arguments: Sequence[Any], numbers: CallNumbers, plans: CallPlans) -> None:
+        self.path, self.array, self._are_kept = path, plans.array, plans.are_kept
         self.inputs, self.shape, self.extent = tuple(numbers.given), numbers.shape, numbers.extent
         self._own = [ZERO if a.size == 1 and a is not ZERO and _is_plain_zero(a) else a for a in numbers.given.values()]
         drives, angles = path.reference.mechanism.drives, path.reference.structure.driven_angles
@@ -269,31 +275,31 @@ class CallPlan(ShortRepr):
         self.times = Call(*arguments[:PARAMETERS]).times(path.reference.solving_order)
         self._time = next((k for k, name in enumerate(names) if name == (TIMES,)), None)
         in_time = set() if self.times is None else {name for one in drives for name in drive_inputs(one.name)}
+        is_long = numbers.extent[0] == 1 < numbers.extent[1]
+        own = {name: self._own[k] for name, k in self.values.items()}
+        self.moving = tuple(name for name, value in own.items() if is_long and value.shape == numbers.extent)
         self._places = [
             self._place(k, name, np.shape(number))
             for k, (name, number) in enumerate(zip(names, flat.numbers, strict=True))
             if name and name != (TIMES,) and not in_time.issuperset(name)
         ]
+        laid = {k for place in self._places for k in place.inputs}
+        self.held = {name: k for name, k in self.values.items() if name in self.moving and self._are_kept and k in laid}
         self._timed = [
             TimedDriver.of(one, inputs, names) for one, inputs in zip(drives, of_drives, strict=True) if in_time
         ]
-        row = (1, self.extent[1])
-        laid = {place.inputs[0] for place in self._places if place.rows == row == self.extent != (1, 1)}
-        moving = [name for name, k in self.values.items() if k in laid]
-        self.before = {name: len(self.inputs) + k for k, name in enumerate(moving)}
-        # by the place where a driver's values go
-        self._before = {self.values[name]: k for name, k in self.before.items()}
-        self._own += [ZERO] * len(self.before)
         self._fitted, self._order = fit(self.shape), max(output.attribute.order for output in path.outputs)
 
     def _place(self, number: int, names: tuple[InputNumber, ...], shape: tuple[int, ...]) -> NumberPlace:
         inputs = tuple(map(self.inputs.index, names))
+        is_copied = self._are_kept and not any(self.values[name] in inputs for name in self.moving)
         if not shape:
-            return NumberPlace(number, inputs, None, None)
+            return NumberPlace(number, inputs, None, None, is_copied)
         if prod(shape) == shape[-1]:
-            return NumberPlace(number, inputs, (1, shape[-1]), None)
+            return NumberPlace(number, inputs, (1, shape[-1]), None, is_copied)
         whole = (*self.shape[:-1], shape[-1])
-        return NumberPlace(number, inputs, (self.extent[0], shape[-1]), None if shape == whole else whole)
+        rows = self.extent[0], shape[-1]
+        return NumberPlace(number, inputs, rows, None if shape == whole else whole, is_copied)
 
     def read(self, numbers: Sequence[Any]) -> ReadCall | None:
         """Return the numbers of a call as inputs; None where they need the checks of a full reading.
@@ -312,14 +318,10 @@ class CallPlan(ShortRepr):
                         return None
                     given[inputs[1]] = self.array(number.imag)
             else:
-                if (before := self._before.get(inputs[0])) is not None:
-                    given[before], given[inputs[0]] = place.laid_twice(number)
-                    continue
                 if inputs[0] not in values and not _are_finite(number):
                     return None
-                given[inputs[0]] = place.laid(number.real if len(inputs) > 1 else number)
-                if len(inputs) > 1:
-                    given[inputs[1]] = place.laid(number.imag)
+                for k, part in zip(inputs, place.laid(number), strict=True):
+                    given[k] = part
         if self._timed:
             if not self._move(given, numbers):
                 return None
@@ -367,17 +369,18 @@ class CallPlan(ShortRepr):
         return self._still[zero]
 
     def program(
-        self, key: Any, read: ReadCall, least: Any, make: Callable[[CallNumbers], ReadyProgram[Any] | None]
+        self, key: Any, read: ReadCall, least: Any, make: Callable[[CallPlan, CallNumbers], ReadyProgram[Any] | None]
     ) -> PlannedProgram | None:
         """Return the program of a call of this form, made once for a key.
 
         `least` is the name of the least margin among its results. None where the program needs other inputs, or the
         drivers' values are not finite.
         """
-        if (key, read.zero) not in self._programs:
-            made = make(read.numbers())
-            self._programs[key, read.zero] = None if made is None else PlannedProgram.of(made, self, least)
-        found = self._programs[key, read.zero]
+        found = self._programs.get((key, read.zero))
+        if found is None and (key, read.zero) not in self._programs:
+            made = make(self, read.numbers())
+            found = None if made is None else PlannedProgram.of(made, self, least)
+            self._programs[key, read.zero] = found
         return found if found is not None and (found.is_watched or read.is_finite()) else None
 
 
@@ -415,8 +418,14 @@ class ReadCall:
     def numbers(self) -> CallNumbers:
         """Return the inputs by name."""
         plan = self.plan
-        # what stands behind the inputs is no number of a call
-        return CallNumbers(dict(zip(plan.inputs, self.given, strict=False)), plan.shape, plan.still(self.zero))
+        return CallNumbers(dict(zip(plan.inputs, self.given, strict=True)), plan.shape, plan.still(self.zero))
+
+    def hold(self, others: Collection[Number] | None = None) -> None:
+        """Put copies in place of the values that are held, but for those that are surely apart from all `others`."""
+        for k in self.plan.held.values():
+            value = self.given[k]
+            if others is None or True in [np.may_share_memory(value, other) for other in others]:
+                self.given[k] = value.copy()
 
     def is_finite(self) -> bool:
         """Tell whether the drivers' values are finite; all else is."""
@@ -446,8 +455,7 @@ class PlannedProgram(NamedTuple):
         """Return the plan of a program with the least margin by this name; None where it has other inputs."""
         flat = program.flat
         known = {name: k for k, name in enumerate(plan.inputs)}
-        known |= {InputNumber(DRIVE, name, BEFORE): k for name, k in plan.before.items()}
-        names = [flat.graph.nodes[k].given for k in flat.inputs]
+        names = [flat.graph.nodes[k].given for k in flat.given]
         if any(name not in known for name in names):
             return None
         needed = flat.graph.needed(program.nodes[least])
@@ -456,6 +464,6 @@ class PlannedProgram(NamedTuple):
         vectors = {name: len(nodes) > 1 for name, nodes in outputs}
         return cls(program, tuple(known[name] for name in names if name is not None), is_watched, vectors)
 
-    def run(self, read: ReadCall, threads: int, given: Mapping[Any, Number] = MappingProxyType({})) -> list[Number]:
+    def run(self, read: ReadCall, threads: int, given: Mapping[Any, Number] | None = None) -> list[Number]:
         """Compute the results of a call, in their order."""
         return self.program.computed([read.given[k] for k in self.places], read.plan.extent, threads, given)

@@ -373,7 +373,7 @@ class SearchedProfile(ShortRepr):
                    "tx": path.toward.real, "ty": path.toward.imag, "coordinate": coordinate, "away": away}  # fmt: skip
         given = [
             rows[int(one.part), None] if one.part else numbers[one.name][None]
-            for one in (program.flat.graph.nodes[k].given for k in program.flat.inputs)
+            for one in (program.flat.graph.nodes[k].given for k in program.flat.given)
             if one is not None
         ]
         return [one[0] for one in program.computed(given, (1, len(coordinate)))]

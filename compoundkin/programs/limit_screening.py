@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,15 @@ from compoundkin.kinematics.curve.change_points import NEAR
 from compoundkin.kinematics.curve.driver_path import MOST
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, numbers_of_designs
 from compoundkin.programs.drawn_approach import ClearApproaches, DrawnApproach
-from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, HOLDS, LEAST, InputNumber, OperationGraph
+from compoundkin.programs.graph.operation_graph import (
+    BEFORE,
+    DIMENSION,
+    DRIVE,
+    HOLDS,
+    LEAST,
+    InputNumber,
+    OperationGraph,
+)
 from compoundkin.programs.recording.recorded_limits import CLOSE, RecordedLimits
 from compoundkin.programs.recording.recorded_mechanism import Recording, record_mechanism
 
@@ -81,19 +88,23 @@ class StepProgram(ShortRepr):
         designs, poses = value.shape
         if (designs > 1) not in self._ready:
             self._ready[designs > 1] = self._made(value)
-        # a step has no sign: the order of the two makes no difference
-        (least,) = self._ready[designs > 1].computed([value[:, :-1], value[:, 1:]], (designs, poses - 1))
+        (least,) = self._ready[designs > 1].computed([value], (designs, poses))
         return -float(least.item() if least.size == 1 else least.min())
 
     def _made(self, value: Number) -> ReadyProgram[str]:
         graph = OperationGraph()
-        ends = [InputNumber(DRIVE, "", part) for part in ("before", "after")]
-        numbers = CallNumbers(dict.fromkeys(ends, value), value.shape, frozenset())
-        return ReadyProgram.of(graph, {"": (negated_step(graph, *map(graph.input, ends)),)}, numbers, self.backend)
+        numbers = CallNumbers({driver_value(""): value}, value.shape, frozenset())
+        return ReadyProgram.of(graph, {"": (negated_step(graph, ""),)}, numbers, self.backend)
 
 
-def negated_step(graph: OperationGraph, before: int, value: int) -> int:
-    """Return the node of the longest step between values and those before them, negated: programs find least values."""
+def driver_value(name: str) -> InputNumber:
+    """Return the input that is a driver's value."""
+    return InputNumber(DRIVE, name, "0")
+
+
+def negated_step(graph: OperationGraph, driver: str) -> int:
+    """Return the node of the longest step of a driver from pose to pose, negated: programs find least values."""
+    value, before = (graph.input(InputNumber(DRIVE, driver, part)) for part in ("0", BEFORE))
     step = graph.apply("abs", graph.apply("sub", value, before))
     return graph.apply(LEAST, graph.apply("neg", step))
 
@@ -110,7 +121,7 @@ class LimitScreening(ShortRepr):
         values: Mapping[str, Number],
         least: Number,
         numbers: Callable[[], CallNumbers],
-        steps: Mapping[str, Number] = MappingProxyType({}),
+        steps: Mapping[str, Number] | None = None,
     ) -> bool:
         """Tell whether surely no design needs screening, as `needed` finds out of all of them.
 
@@ -118,11 +129,12 @@ class LimitScreening(ShortRepr):
         drivers, negated, as far as a program computed them beside.
         """
         margin = least.item() if least.size == 1 else float(least.min())
-        return (
-            margin >= NEAR
-            and margin >= self._safe_margin(values, steps)
-            and (self.approach.is_passed(values) or not self._squares or self._is_approached(values, numbers()))
-        )
+        if not margin >= NEAR:
+            return False
+        longest = self._longest_step(values, steps)
+        if longest > 1.0 and not margin >= safe_margin(longest):
+            return False
+        return self.approach.is_passed(values) or not self._squares or self._is_approached(values, numbers())
 
     def _is_approached(self, values: Mapping[str, Number], numbers: CallNumbers) -> bool:
         """Tell whether designs are surely clear of limits on the approach to a motion."""
@@ -146,14 +158,14 @@ class LimitScreening(ShortRepr):
         resting = resting_numbers(numbers, approach)
         return self._program(self._poses, resting).run(resting)[MARGIN]
 
-    def _safe_margin(self, values: Mapping[str, Number], steps: Mapping[str, Number] = MappingProxyType({})) -> float:
+    def _safe_margin(self, values: Mapping[str, Number], steps: Mapping[str, Number] | None = None) -> float:
         return float(safe_margin(max(1.0, self._longest_step(values, steps))))
 
-    def _longest_step(self, values: Mapping[str, Number], steps: Mapping[str, Number] = MappingProxyType({})) -> float:
+    def _longest_step(self, values: Mapping[str, Number], steps: Mapping[str, Number] | None = None) -> float:
         """Return the longest step of a driver, in its spacing."""
         longest = 0.0
         for name, value in values.items():
-            if name in steps:
+            if steps and name in steps:
                 longest = max(longest, -steps[name].item() / self.approach.spacings[name])
             elif value.shape[1] > 1:
                 step = _longest_of(value) if value.size < MANY_VALUES else self._steps.longest(value)

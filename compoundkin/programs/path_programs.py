@@ -22,7 +22,7 @@ from compoundkin.programs.call_numbers import (
     check_threads,
     output_arrays,
 )
-from compoundkin.programs.call_plans import CallPlans, ReadCall
+from compoundkin.programs.call_plans import CallPlan, CallPlans, ReadCall
 from compoundkin.programs.call_seeds import CallSeeds
 from compoundkin.programs.derivatives.law_slopes import with_law_slopes
 from compoundkin.programs.dimensions import (
@@ -33,8 +33,7 @@ from compoundkin.programs.dimensions import (
     mechanism_with,
 )
 from compoundkin.programs.drawn_approach import DrawnApproach
-from compoundkin.programs.graph.operation_graph import BEFORE, DRIVE, InputNumber
-from compoundkin.programs.limit_screening import LimitScreening, ScreenedDesigns, negated_step
+from compoundkin.programs.limit_screening import LimitScreening, ScreenedDesigns, driver_value, negated_step
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.recorded_march import STEPS
@@ -42,9 +41,9 @@ from compoundkin.programs.recording.recorded_mechanism import Recording
 from compoundkin.programs.recording.recorded_motion import ProgramOutput
 from compoundkin.programs.solved_designs import ProgramConfiguration, solve_designs, values_near_limits
 
-# The name of the least margin among the results of a program, and before a driver's that of its longest step; no
-# output is named so.
-LEAST = " "
+# The name of the least margin among the results of a program; before a driver's, what its longest step and the copy of
+# its values are called. No output is named so.
+LEAST, COPY = " ", "="
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -132,24 +131,22 @@ class PathPrograms(ShortRepr):
         read = tuple(one for one in self.dimensions if one.is_read)
         return Recording(own.solving_order, self.signs, read, self.order, still, own.inputs.ends, steps)
 
-    def program(self, numbers: CallNumbers, moving: tuple[str, ...] = ()) -> ReadyProgram[str]:
+    def program(
+        self, numbers: CallNumbers, moving: tuple[str, ...] = (), held: tuple[str, ...] = ()
+    ) -> ReadyProgram[str]:
         """Return the program for numbers of this form; it computes all outputs, and then the least margin.
 
-        Last are the longest steps of the drivers `moving`, negated; their values a pose before are inputs too.
+        Last are the longest steps of the drivers `moving`, negated, and copies of the values of those `held`.
         """
-        if (numbers.form, moving) not in self._programs:
+        key = numbers.form, moving, held
+        if key not in self._programs:
             path = self.variant(numbers.still)
             graph, carried = path.mechanism.graph, path.carried(numbers)
             nodes = {**dict(zip(self.names, path.nodes, strict=True)), LEAST: (path.least,)}
-            given = dict(numbers.given)
-            for name in moving:
-                value, before = (InputNumber(DRIVE, name, part) for part in ("0", BEFORE))
-                given[before] = given[value]
-                nodes[f"{LEAST}{name}"] = (negated_step(graph, graph.input(before), graph.input(value)),)
-            whole = replace(numbers, given=given)
-            program = ReadyProgram.of(graph, nodes, whole, self.chosen_backend, carried)
-            self._programs[numbers.form, moving] = program
-        return self._programs[numbers.form, moving]
+            nodes |= {f"{LEAST}{name}": (negated_step(graph, name),) for name in moving}
+            nodes |= {f"{COPY}{name}": (graph.input(driver_value(name)),) for name in held}
+            self._programs[key] = ReadyProgram.of(graph, nodes, numbers, self.chosen_backend, carried)
+        return self._programs[key]
 
     @cached_property
     def plans(self) -> CallPlans:
@@ -160,17 +157,23 @@ class PathPrograms(ShortRepr):
         """Return the values of a call; raises InvalidInput for what does not fit."""
         read = self.plans.read(call)
         if read is not None and type(threads) is int and threads > 0:
-            before = read.plan.before
-            program = read.plan.program(None, read, LEAST, partial(self._program_of_inputs, tuple(before)))
+            plan = read.plan
+            program = plan.program(None, read, LEAST, self._program_of_inputs)
             if program is not None:
-                given = {} if out is None else self._arrays_of(out, program.vectors, read.plan.shape)
+                given = None
+                if out is not None:
+                    given = self._arrays_of(out, program.vectors, plan.shape)
+                    read.hold(given.values())
                 arrays, count = program.run(read, threads, given), len(self.names)
-                least, steps = arrays[count], dict(zip(before, arrays[count + 1 :], strict=True))
-                arrays = arrays[:count]
+                rest = arrays[count:]
+                del arrays[count:]
+                for k in reversed(plan.held.values()):
+                    read.given[k] = rest.pop()
+                least, steps = rest[0], {name: rest[k] for k, name in enumerate(plan.moving, 1)}
                 if self.limits.is_clear(read.driver_values, least, read.numbers, steps):
-                    return self.path_values(read.numbers, arrays, None, read.plan.shape)
+                    return self.path_values(read.numbers, arrays, None, plan.shape)
                 # a full reading reports values that are not finite
-                return self.checked_values(self.numbers(call), arrays, least)
+                return self.checked_values(read.numbers() if read.is_finite() else self.numbers(call), arrays, least)
         check_threads(threads)
         numbers = self.numbers(call) if read is None else self._seeded_numbers(call, read)
         given = {} if out is None else self._arrays_of(out, self._are_vectors(self.program(numbers)), numbers.shape)
@@ -182,9 +185,9 @@ class PathPrograms(ShortRepr):
         earlier = out.arrays_for(vectors, shape) if type(out) is PathValues else None
         return output_arrays(out, vectors, shape) if earlier is None else earlier
 
-    def _program_of_inputs(self, moving: tuple[str, ...], numbers: CallNumbers) -> ReadyProgram[str] | None:
+    def _program_of_inputs(self, plan: CallPlan, numbers: CallNumbers) -> ReadyProgram[str] | None:
         """Return the program of numbers without seeds; None where it needs some."""
-        return None if self.variant(numbers.still).seeds else self.program(numbers, moving)
+        return None if self.variant(numbers.still).seeds else self.program(numbers, plan.moving, tuple(plan.held))
 
     def numbers(self, call: Call, with_slopes: bool = False) -> CallNumbers:
         """Return the numbers of a call, perhaps with the slopes of laws; raises InvalidInput for what does not fit."""
@@ -195,6 +198,7 @@ class PathPrograms(ShortRepr):
         """Return the numbers of a call that was read by its plan; a full reading reports what is not finite."""
         if not read.is_finite():
             return self._read_in_full(call, with_slopes)
+        read.hold()
         numbers = read.numbers()
         return self.seeds.added(self.variant(numbers.still), numbers)
 

@@ -195,10 +195,25 @@ def test_values_without_a_margin_that_they_could_spoil_are_held_too():
 @pytest.mark.parametrize("speed", [3.0, np.array(3.0)])  # a quick call, and one that is not
 def test_what_is_found_does_not_change_with_the_arrays_that_were_given(path, speed):
     values, column = CRANK.copy(), COLUMN.copy()
-    found = path(values, {"crank.D": column}, speed=speed)
+    found, own = path(values, {"crank.D": column}, speed=speed), path(values, speed=speed)
     values += 1.0
     column *= 0.9
     np.testing.assert_allclose(found.motion(1).points["G"].position[0], found["G.position"][1], atol=1e-10)
+    np.testing.assert_allclose(own.motion().points["G"].position[0], own["G.position"], atol=1e-10)
+
+
+@pytest.mark.parametrize("poses", [200, 5000])
+def test_results_may_be_written_over_the_values_that_were_given(poses):
+    path, values = ck.compile(loaded("six-bar"), ["G.x", "G.y"]), np.linspace(0.3, 7.0, poses)
+    expected = path(values, speed=2.0)
+    for _ in range(2):  # read in full, and by its plan
+        whole = np.concatenate([values, values])
+        for given, out in ((whole[:poses], whole[:poses]), (whole[:poses], whole[3 : poses + 3])):
+            given[:] = values
+            found = path(given, speed=2.0, out={"G.x": out, "G.y": np.empty(poses)})
+            for name in expected:
+                np.testing.assert_array_equal(found[name], expected[name])
+            np.testing.assert_allclose(found.motion().points["G"].position[0].real, out, atol=1e-10)
 
 
 def test_several_drivers_go_by_name(arm):

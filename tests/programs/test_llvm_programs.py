@@ -14,7 +14,7 @@ from compoundkin.base.errors import InvalidInput
 from compoundkin.programs.backends import chosen_back_end, llvm_backend, runner_of
 from compoundkin.programs.backends.llvm_plan import Machine
 from compoundkin.programs.graph.flat_program import BY_BOTH, BY_DESIGN, BY_POSE, Carried, flat_program
-from compoundkin.programs.graph.operation_graph import InputNumber, OperationGraph
+from compoundkin.programs.graph.operation_graph import BEFORE, InputNumber, OperationGraph
 from tests.benchmarks import six_bar
 from tests.programs.test_tape import arrays, plain, program_of_everything
 
@@ -98,6 +98,28 @@ def test_arrays_of_any_strides(shape: tuple[int, int], machine: Any) -> None:
         assert not z[1 - n % 2].any()
 
 
+@pytest.mark.parametrize("shape", [(1, 1), (1, 1100), (1, 5003), (3, 530), (40, 5)])
+def test_an_input_is_read_a_pose_before_too(shape: tuple[int, int], machine: Any) -> None:
+    """At the first pose it is as it is there; copies of inputs are results."""
+    graph, x = OperationGraph(), InputNumber("drive", "crank", "0")
+    now, before = graph.input(x), graph.input(x._replace(part=BEFORE))
+    step = graph.apply("sub", now, before)
+    outputs = [step, graph.apply("least", step), graph.apply("cos", graph.apply("add", now, before)), now]
+    stratum = BY_POSE * (shape[1] > 1) | BY_DESIGN * (shape[0] > 1)
+    values = np.random.default_rng(0).normal(size=shape)
+    late = np.concatenate([values[:, :1], values[:, :-1]], axis=1)
+    expected = [values - late, (values - late).min(axis=1, keepdims=True), np.cos(values + late), values]
+    program = flat_program(graph, outputs, {x: stratum, x._replace(part=BEFORE): stratum})
+    for backend in ("llvm", "numpy"):
+        runner = runner_of(program, backend)
+        for way in ("as it is", "third", "back"):
+            for threads in (1, 2):
+                found = [np.full(program.shape(k, *shape), -3.0) for k in outputs]
+                runner([placed(values, way)], found, shape, threads)
+                for ours, theirs in zip(found, expected, strict=True):
+                    np.testing.assert_allclose(ours, theirs, rtol=0, atol=3e-16, err_msg=f"{backend} {way}")
+
+
 def test_nothing_is_written_beyond_an_array(machine: Any) -> None:
     graph, x = OperationGraph(), InputNumber("drive", "crank", "0")
     nodes = [graph.apply(name, graph.input(x)) for name in ("cos", "sin")]
@@ -175,10 +197,10 @@ def test_a_march_carries_numbers_from_pose_to_pose(shape: tuple[int, int], machi
         expected[1, :, k] = now
         now, before = (now + before + drifts[0, k] ** 2) / 2, now
         expected[0, :, k] = now
-    given_arrays = {x: None, y: first, start: first, drift: drifts, share: shares}
+    given_arrays = {start: first, drift: drifts, share: shares}
     for threads in (1, 2):
         found = [np.empty(program.shape(k, *shape)) for k in outputs]
-        runner_of(program, "llvm")([given_arrays[k] for k in program.inputs], found, shape, threads)
+        runner_of(program, "llvm")([given_arrays[k] for k in program.given], found, shape, threads)
         np.testing.assert_allclose(found[:3], [*expected, np.cos(expected[0])], rtol=1e-13)
         np.testing.assert_allclose(found[3], expected[0].sum(1, keepdims=True), rtol=1e-13)
         np.testing.assert_allclose(found[4], (expected[0] + shares).min(1, keepdims=True), rtol=1e-13)

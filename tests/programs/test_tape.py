@@ -135,7 +135,7 @@ def test_a_march_carries_numbers_from_pose_to_pose(shape: tuple[int, int], monke
     program = flat_program(graph, outputs, given, carried)  # type: ignore[arg-type]
     random = np.random.default_rng(0)
     first, drifts, shares = random.random((shape[0], 1)), random.random((1, shape[1])), random.random(shape)
-    given_arrays = {x: first, y: first, start: first, drift: drifts, share: shares}
+    given_arrays = {start: first, drift: drifts, share: shares}
     expected, now, before = np.empty((2, *shape)), first[:, 0], np.full(shape[0], 0.5)
     for k in range(shape[1]):
         expected[1, :, k] = now
@@ -144,7 +144,7 @@ def test_a_march_carries_numbers_from_pose_to_pose(shape: tuple[int, int], monke
     monkeypatch.setattr(tape_backend, "NUMBERS_PER_THREAD", 1)
     for threads in (1, 2):
         found = [np.empty(program.shape(k, *shape)) for k in outputs]
-        Tape().runner(program)([given_arrays[k] for k in program.inputs], found, shape, threads)
+        Tape().runner(program)([given_arrays[k] for k in program.given], found, shape, threads)
         np.testing.assert_allclose(found[:3], [*expected, np.cos(expected[0])], rtol=1e-13)
         np.testing.assert_allclose(found[3], expected[0].sum(1, keepdims=True), rtol=1e-13)
         np.testing.assert_allclose(found[4], (expected[0] + shares).min(1, keepdims=True), rtol=1e-13)

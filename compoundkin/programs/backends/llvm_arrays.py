@@ -79,12 +79,12 @@ KIND, DATA, DIMENSIONS, SHAPE, STRIDES, NUMBERS, FLAGS = 8, 16, 24, 32, 40, 56, 
 RECORDS_ARE_KNOWN = _are_records_known()
 
 
-def array_records(program: FlatProgram, given: Sequence[int], inputs: Any, outputs: Any, shape: tuple[int, int]) -> Any:
+def array_records(program: FlatProgram, inputs: Any, outputs: Any, shape: tuple[int, int]) -> Any:
     """Return the arrays of a call, where their records are, and what keeps these."""
-    nodes = [*(program.inputs[i] for i in given), *program.outputs]
+    nodes = [*program.given, *program.outputs]
     arrays: list[Any] = []
     for k, array in zip(nodes, (*inputs, *outputs), strict=True):
-        is_output = len(arrays) >= len(given)
+        is_output = len(arrays) >= len(program.given)
         found = np.asarray(array) if is_output else np.require(array, FLOAT, "A")
         if found.dtype != FLOAT or found.shape != program.shape(k, *shape):
             raise ValueError(f"an array of shape {found.shape} stands where one of {program.shape(k, *shape)} belongs")
@@ -97,9 +97,9 @@ def array_records(program: FlatProgram, given: Sequence[int], inputs: Any, outpu
     return arrays, row.ctypes.data, (records, row)
 
 
-def layout_of(program: FlatProgram, given: Sequence[int], arrays: Sequence[Any], axis: int) -> ArrayLayout:
+def layout_of(program: FlatProgram, arrays: Sequence[Any], axis: int) -> ArrayLayout:
     """Return how arrays stand along the lanes of a plan."""
-    nodes = [*(program.inputs[i] for i in given), *program.outputs]
+    nodes = [*program.given, *program.outputs]
     places: dict[Any, int] = {}
     kinds: list[int] = []
     pairs: list[tuple[int, int]] = []
@@ -111,7 +111,7 @@ def layout_of(program: FlatProgram, given: Sequence[int], arrays: Sequence[Any],
         if not lanes or (length > 1 and stride != 2 * FLOAT.itemsize):
             continue
         other = array.strides[1 - along] if array.shape[1 - along] > 1 else 0
-        role = (i < len(given), program.strata[k], home(program, k), other)
+        role = (i < len(program.given), program.strata[k], home(program, k), other)
         places[role, array.ctypes.data] = i
     for (role, place), i in places.items():
         partner = places.get((role, place + FLOAT.itemsize))
@@ -262,15 +262,15 @@ class LaneArrays:
     def _kind(self, array: int) -> int:
         return self.plan.layout.kinds[array]
 
-    def _address(self, array: int) -> str:
-        """Write where the first lane of an array is now."""
+    def _address(self, array: int, pose: str = "%p") -> str:
+        """Write where the first lane of an array is at a pose."""
         base = self._base(array)
         if not self.plan.stratum(array) & BY_POSE:
             return base
         if self.axis == BY_POSE and self._kind(array) != ANY_STRIDE:
             of = "double" if self._kind(array) != COMPLEX else "<2 x double>"
-            return self.text.put(f"getelementptr {of}, ptr {base}, i64 %p")
-        offset = self.text.put(f"mul i64 %p, {self._step(array, 2)}")
+            return self.text.put(f"getelementptr {of}, ptr {base}, i64 {pose}")
+        offset = self.text.put(f"mul i64 {pose}, {self._step(array, 2)}")
         return self.text.put(f"getelementptr i8, ptr {base}, i64 {offset}")
 
     def mask(self, each: int = 1) -> str:
@@ -296,13 +296,29 @@ class LaneArrays:
 
     def load(self, array: int) -> str:
         """Write the reading of an array's lanes."""
-        if not self.axis & self.plan.stratum(array):
-            return self.text.spread(self.text.put(f"load double, ptr {self._address(array)}, {STEADY}"))
-        if self._kind(array) == ANY_STRIDE:
-            return self._gathered(array)
-        if self._kind(array) == COMPLEX:
+        if self.axis & self.plan.stratum(array) and self._kind(array) == COMPLEX:
             return self._part(array)
-        return self._many(self._address(array), 1)
+        return self._at(array, self._address(array))
+
+    def load_before(self, array: int, now: str) -> str:
+        """Write the reading of an array's lanes a pose before, which is as they are `now` at the first pose."""
+        text = self.text
+        text.declared.add("declare i64 @llvm.smax.i64(i64, i64)")
+        pose = text.put(f"call i64 @llvm.smax.i64(i64 {text.put('sub i64 %p, 1')}, i64 0)")
+        found = self._at(array, self._address(array, pose))
+        if text.lanes == 1 or self.axis != BY_POSE:
+            return found
+        # lanes of the first poses, put on by one
+        order = _order((0, *range(text.lanes - 1)))
+        late = text.put(f"shufflevector {text.real} {now}, {text.real} poison, {order}")
+        is_first = text.put("icmp eq i64 %p, 0")
+        return text.put(f"select i1 {is_first}, {text.real} {late}, {text.real} {found}")
+
+    def _at(self, array: int, place: str) -> str:
+        """Write the reading of an array's lanes of which the first is at a place."""
+        if not self.axis & self.plan.stratum(array):
+            return self.text.spread(self.text.put(f"load double, ptr {place}, {STEADY}"))
+        return self._many(place, 1) if self._kind(array) == SIDE_BY_SIDE else self._gathered(array, place)
 
     def _many(self, place: str, each: int) -> str:
         """Write the reading of numbers side by side."""
@@ -326,22 +342,24 @@ class LaneArrays:
                 self._loaded[each] = self.text.put(f"shufflevector {kind} {both}, {kind} poison, {order}")
         return self._loaded[array]
 
-    def _places(self, array: int) -> str:
-        """Write where each lane of an array of any stride is."""
+    def _places(self, array: int, place: str) -> str:
+        """Write where each lane of an array of any stride is, of which the first is at a place."""
         text, word = self.text, 1 if self.axis == BY_DESIGN else 2
         lanes, whole = text.lanes, text.whole
         one = text.put(f"insertelement {whole} poison, i64 {self._step(array, word)}, i64 0")
         all_ = text.put(f"shufflevector {whole} {one}, {whole} poison, <{lanes} x i32> zeroinitializer")
         numbers = ", ".join(f"i64 {k}" for k in range(lanes))
         steps = text.put(f"mul {whole} {all_}, <{numbers}>")
-        return text.put(f"getelementptr i8, ptr {self._address(array)}, {whole} {steps}")
+        return text.put(f"getelementptr i8, ptr {place}, {whole} {steps}")
 
-    def _gathered(self, array: int) -> str:
+    def _gathered(self, array: int, place: str) -> str:
         text, lanes = self.text, self.text.lanes
         name = f"@llvm.masked.gather.v{lanes}f64.v{lanes}p0"
         pointers, truths = f"<{lanes} x ptr>", f"<{lanes} x i1>"
         text.declared.add(f"declare {text.real} {name}({pointers}, i32, {truths}, {text.real})")
-        arguments = f"{pointers} {self._places(array)}, i32 8, {truths} {self.mask()}, {text.real} zeroinitializer"
+        arguments = (
+            f"{pointers} {self._places(array, place)}, i32 8, {truths} {self.mask()}, {text.real} zeroinitializer"
+        )
         return text.put(f"call {text.real} {name}({arguments})")
 
     # --- writing ---
@@ -404,7 +422,7 @@ class LaneArrays:
         name = f"@llvm.masked.scatter.v{lanes}f64.v{lanes}p0"
         pointers, truths = f"<{lanes} x ptr>", f"<{lanes} x i1>"
         text.declared.add(f"declare void {name}({text.real}, {pointers}, i32, {truths})")
-        places = self._places(array)
+        places = self._places(array, self._address(array))
         text.do(f"call void {name}({text.real} {value}, {pointers} {places}, i32 8, {truths} {self.mask()})")
 
 

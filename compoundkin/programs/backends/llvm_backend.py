@@ -20,7 +20,15 @@ import llvmlite.binding as llvm
 import numpy as np
 
 from compoundkin.programs.backends.llvm_arrays import FIRST_OBJECT, RECORDS_ARE_KNOWN, array_records, layout_of
-from compoundkin.programs.backends.llvm_plan import ARRAY_KIND, DESIGNS_AT_ONCE, HEADER, NUMBER_KIND, LanePlan, Machine
+from compoundkin.programs.backends.llvm_plan import (
+    ARRAY_KIND,
+    DESIGNS_AT_ONCE,
+    EXTENT,
+    HEADER,
+    NUMBER_KIND,
+    LanePlan,
+    Machine,
+)
 from compoundkin.programs.backends.llvm_program import (
     ANGLE_TOO_LARGE,
     FITS_NOT,
@@ -62,14 +70,19 @@ class PlannedCode:
             address = words.ctypes.data + (-words.ctypes.data) % 64
             first = (address - words.ctypes.data) // 8
             words[first + ARRAY_KIND], words[first + NUMBER_KIND] = id(np.ndarray), id(np.dtype(float))
-            self._own.words, self._own.address = words, address
+            self._own.words, self._own.first, self._own.address = words, first, address
             return address
 
     def whole(self, objects: int, shape: tuple[int, int]) -> int:
         """Run all designs and segments; answer 0, or why not."""
-        designs, poses = shape
-        length = segment_length(poses)
-        return self.run_all(objects, self.scratch(), designs, poses, length, segments_of(poses, length))  # type: ignore[no-any-return]
+        own = self._own
+        if getattr(own, "extent", None) != shape:
+            self.scratch()
+            poses, first = shape[1], own.first + EXTENT
+            length = segment_length(poses)
+            own.words[first : first + 4] = *shape, length, segments_of(poses, length)
+            own.extent = shape
+        return self.run_all(objects, own.address)  # type: ignore[no-any-return]
 
     def part(self, objects: int, shape: tuple[int, int], *bounds: int, sums: int | None = None, last: int = 1) -> int:
         """Run some designs and segments; answer 0, or why not."""
@@ -83,13 +96,9 @@ class LlvmRunner:
         self.program = program
         self._codes: dict[Any, PlannedCode] = {}
         self._recent: dict[tuple[int, bool, bool], PlannedCode] = {}
-        carried = {one.given for one in program.carried}
-        self._given = [i for i, k in enumerate(program.inputs) if k not in carried]
 
     def __call__(self, inputs: Sequence[Any], outputs: Sequence[Any], shape: tuple[int, int], threads: int = 1) -> None:
         """Compute the outputs."""
-        if self.program.carried:
-            inputs = [inputs[i] for i in self._given]
         designs, poses = shape
         by_designs = designs > 1 and poses < FEW_POSES and poses < designs
         axis = BY_DESIGN if by_designs or self.program.carried else BY_POSE
@@ -109,8 +118,8 @@ class LlvmRunner:
         """Run the code that suits the arrays, or the angles."""
         program = self.program
         inputs, outputs = arrays
-        arrays, objects, _kept = array_records(program, self._given, inputs, outputs, shape)
-        layout = layout_of(program, self._given, arrays, way[0])
+        arrays, objects, _kept = array_records(program, inputs, outputs, shape)
+        layout = layout_of(program, arrays, way[0])
         if answer == FITS_NOT:
             code = self._recent[way] = self._code(way, layout, False)
             answer = _run_code(code, objects, shape, threads)
@@ -170,7 +179,7 @@ NUMBER, PLACE = ctypes.c_ssize_t, ctypes.c_void_p
 
 
 RUN = ctypes.CFUNCTYPE(ctypes.c_int, PLACE, PLACE, *[NUMBER] * 6, PLACE, NUMBER, NUMBER)
-RUN_ALL = ctypes.CFUNCTYPE(ctypes.c_int, PLACE, PLACE, *[NUMBER] * 4)
+RUN_ALL = ctypes.CFUNCTYPE(ctypes.c_int, PLACE, PLACE)
 
 
 @dataclass(frozen=True)

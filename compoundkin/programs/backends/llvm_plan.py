@@ -23,11 +23,12 @@ OF_STRATUM = {FIXED_NUMBER: FIXED, BY_DESIGN: BEFORE, BY_POSE: ROWS, BY_BOTH: LO
 ANY_STRIDE, SIDE_BY_SIDE, COMPLEX = 0, 1, 2
 
 
-# Words before the table of arrays: what an array must be, which poses the rows hold, whether an angle was too large.
+# Words before the table of arrays: what an array must be, which poses the rows hold, whether an angle was too large;
+# then designs, poses, poses of a segment and segments of a call that computes all.
 HEADER = 8
 
 
-ARRAY_KIND, NUMBER_KIND, ROWS_OF, TOO_LARGE = 0, 1, 2, 3
+ARRAY_KIND, NUMBER_KIND, ROWS_OF, TOO_LARGE, EXTENT = 0, 1, 2, 3, 4
 
 
 DESIGNS_AT_ONCE, SEGMENTS = 64, 64
@@ -125,11 +126,10 @@ class LanePlan:
                     found[home].setdefault(k, len(found[home]))
         return found
 
-    @cached_property
+    @property
     def inputs(self) -> tuple[int, ...]:
-        """The inputs that a caller gives; carried numbers are none."""
-        carried = {one.given for one in self.program.carried}
-        return tuple(k for k in self.program.inputs if k not in carried)
+        """The inputs that a caller gives."""
+        return self.program.given
 
     @cached_property
     def reductions(self) -> tuple[int, ...]:

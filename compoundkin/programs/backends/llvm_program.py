@@ -25,6 +25,7 @@ from compoundkin.programs.backends.llvm_plan import (
     AFTER,
     BEFORE,
     DESIGNS_AT_ONCE,
+    EXTENT,
     FIXED,
     HEADER,
     LOOP,
@@ -49,11 +50,17 @@ ARGUMENTS = "ptr %O, ptr %S, i64 %D, i64 %P, i64 %d0, i64 %d1, i64 %s0, i64 %s1,
 RUN = f"define i32 @run({ARGUMENTS}) #0 {{"
 
 
-# All designs and segments in one call: every argument costs as much as a dozen poses.
-RUN_ALL = """define i32 @run_all(ptr %O, ptr %S, i64 %D, i64 %P, i64 %L, i64 %s1) #0 {
+# All designs and segments in one call. Every argument costs as much as a dozen poses: their numbers are in the header.
+RUN_ALL = f"""define i32 @run_all(ptr %O, ptr %S) #0 {{
+  %E = getelementptr i64, ptr %S, i64 {EXTENT}
+  %extent = load <4 x i64>, ptr %E, align 8
+  %D = extractelement <4 x i64> %extent, i64 0
+  %P = extractelement <4 x i64> %extent, i64 1
+  %L = extractelement <4 x i64> %extent, i64 2
+  %s1 = extractelement <4 x i64> %extent, i64 3
   %answer = call i32 @run(ptr %O, ptr %S, i64 %D, i64 %P, i64 0, i64 %D, i64 0, i64 %s1, ptr null, i64 1, i64 %L)
   ret i32 %answer
-}"""
+}}"""
 
 
 FITS_NOT, ANGLE_TOO_LARGE = 1, 2
@@ -420,6 +427,11 @@ class LaneSection:
             for j, one in enumerate(plan.program.carried):
                 if one.given == k:
                     return f"%c{j}"
+            value = plan.program.delayed.get(k)
+            if value is not None:
+                now = self.number(value)
+                varies = plan.program.strata[value] & BY_POSE
+                return self.arrays.load_before(plan.inputs.index(value), now) if varies else now
             return self.arrays.load(plan.inputs.index(k))
         if k in plan.reductions:
             return self._word("%A", plan.reductions.index(k) * plan.width, self.axis)

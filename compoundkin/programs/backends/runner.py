@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 class Runner(Protocol):
     """A program that can be run.
 
-    `inputs` are float64 arrays, one for each of `program.inputs`, each (1 or designs, 1 or poses) as its stratum says
+    `inputs` are float64 arrays, one for each of `program.given`, each (1 or designs, 1 or poses) as its stratum says
     (any strides). `outputs` are float64 arrays to be written, one for each of `program.outputs`, of exactly the shape
     of its stratum (any strides: real parts of complex arrays among them); truths are written as 0.0 and 1.0.
     `shape` is designs x poses. Results do not depend on the number of `threads`.

@@ -111,7 +111,9 @@ class TapeRunner:
     def __call__(self, inputs: Sequence[Any], outputs: Sequence[Any], shape: tuple[int, int], threads: int = 1) -> None:
         """Compute the outputs."""
         program, nodes = self.program, self.program.graph.nodes
-        values: dict[int, Any] = dict(zip(program.inputs, inputs, strict=True))
+        values: dict[int, Any] = dict(zip(program.given, inputs, strict=True))
+        for k, value in program.delayed.items():
+            values[k] = np.concatenate([values[value][:, :1], values[value][:, :-1]], axis=1)
         for k in self._known:
             times = shape[1] if nodes[k].operation == TOTAL else 1
             values[k] = np.full((shape[0], 1), times * nodes[nodes[k].operands[0]].value)

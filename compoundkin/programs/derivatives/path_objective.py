@@ -31,7 +31,7 @@ from compoundkin.programs.call_numbers import (
     parameter_inputs,
     with_parameters,
 )
-from compoundkin.programs.call_plans import CallPlans
+from compoundkin.programs.call_plans import CallPlan, CallPlans
 from compoundkin.programs.derivatives.differentiation import reverse
 from compoundkin.programs.derivatives.law_slopes import slope_inputs, summed_slopes
 from compoundkin.programs.derivatives.solved_inputs import (
@@ -42,6 +42,7 @@ from compoundkin.programs.derivatives.solved_inputs import (
     solved_inputs,
 )
 from compoundkin.programs.graph.operation_graph import TOTAL, InputNumber, OperationGraph
+from compoundkin.programs.limit_screening import negated_step
 from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.recorded_number import RecordedNumber, one_pose, selected
 
@@ -64,7 +65,7 @@ class PathObjective(ShortRepr):
 
     @cached_property
     def _plans(self) -> CallPlans:
-        return CallPlans(self.path)
+        return CallPlans(self.path, are_kept=False)
 
     def __call__(
         self,
@@ -129,11 +130,15 @@ class PathObjective(ShortRepr):
         read = self._plans.read((*call, given))
         if read is None or type(threads) is not int or threads < 1:
             return None
+        moving = read.plan.moving
         program = read.plan.program(is_sloped, read, _MARGIN, partial(self._program_of_inputs, given, is_sloped))
         if program is None:
             return None
-        found = ObjectiveValues.of(program.program, program.run(read, threads))
-        if self.path.limits.is_clear(read.driver_values, found.least, read.numbers):
+        arrays = program.run(read, threads)
+        count = len(arrays) - len(moving)
+        found = ObjectiveValues.of(program.program, arrays[:count])
+        steps = dict(zip(moving, arrays[count:], strict=True))
+        if self.path.limits.is_clear(read.driver_values, found.least, read.numbers, steps):
             return ComputedSum(*found.shaped(read.plan.shape), True)
         return self._screened(read.numbers(), given, is_sloped, threads, found) if read.is_finite() else None
 
@@ -182,23 +187,28 @@ class PathObjective(ShortRepr):
         return ComputedSum(*joined.shaped(whole.shape), False)
 
     def _program_of_inputs(
-        self, given: Mapping[str, Any], is_sloped: bool, numbers: CallNumbers
+        self, given: Mapping[str, Any], is_sloped: bool, plan: CallPlan, numbers: CallNumbers
     ) -> ReadyProgram[str] | None:
         """Return the program of numbers without seeds; None where it needs some."""
         if self.path.variant(numbers.still).seeds:
             return None
-        return self._program(given, is_sloped, numbers, ALL_POSES)
+        return self._program(given, is_sloped, numbers, ALL_POSES, plan.moving)
 
     def _program(
-        self, given: Mapping[str, Any], is_sloped: bool, numbers: CallNumbers, known: str
+        self,
+        given: Mapping[str, Any],
+        is_sloped: bool,
+        numbers: CallNumbers,
+        known: str,
+        moving: tuple[str, ...] = (),
     ) -> ReadyProgram[str]:
         # which parameters are complex decides on their inputs
         kinds = {name: np.iscomplexobj(value) for name, value in sorted(given.items())}
-        key = numbers.form, tuple(kinds.items()), is_sloped, known
+        key = numbers.form, tuple(kinds.items()), is_sloped, known, moving
         if key not in self._programs:
             path = self.path
             by = slope_inputs(path.dimensions, path.order) if is_sloped else {}
-            form = ObjectiveForm(self.function, kinds, by, known)
+            form = ObjectiveForm(self.function, kinds, by, known, moving)
             variant = path.variant(numbers.still, known == SOLVED_POSES)
             self._programs[key] = objective_program(variant, path.names, numbers, form, path.chosen_backend)
         return self._programs[key]
@@ -237,13 +247,14 @@ class ObjectiveForm:
     """A function to record, and the form of its program.
 
     `given` tells of each parameter of a call whether it is complex; slopes are `by` one input, or two of a point;
-    `known` is one of ALL_POSES, ASSEMBLED_POSES, SOLVED_POSES.
+    `known` is one of ALL_POSES, ASSEMBLED_POSES, SOLVED_POSES; of the drivers `moving` the longest steps are found.
     """
 
     function: Callable[[ObjectivePose], Any]
     given: Mapping[str, bool]
     by: Mapping[str, tuple[InputNumber, ...]]
     known: str
+    moving: tuple[str, ...]
 
 
 @dataclass(frozen=True, repr=False)
@@ -260,7 +271,7 @@ class ObjectiveValues(ShortRepr):
     @classmethod
     def of(cls, program: ReadyProgram[str], found: Iterable[Number]) -> ObjectiveValues:
         """Return the results of a program: sum and margin come first."""
-        (_, value), (_, least), *slopes = zip(program.nodes, found, strict=True)
+        (_, value), (_, least), *slopes = zip(program.nodes, found, strict=False)
         return cls(value, least, dict(slopes))
 
     @classmethod
@@ -313,7 +324,8 @@ def objective_program(
     every = [k for nodes in by.values() for k in nodes]
     adjoints = dict(zip(every, reverse(graph, root, every, numbers.strata(graph), counted.x), strict=True))
     slopes = {name: tuple(adjoints[k] for k in nodes) for name, nodes in by.items()}
-    nodes = {_SUM: (root,), _MARGIN: (path.least,), **slopes}
+    steps = {f"{_MARGIN}{name}": (negated_step(graph, name),) for name in form.moving}
+    nodes = {_SUM: (root,), _MARGIN: (path.least,), **slopes, **steps}
     return ReadyProgram.of(graph, nodes, numbers, backend, path.carried(numbers))
 
 

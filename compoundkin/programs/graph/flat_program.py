@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import reduce
+from functools import cached_property, reduce
 from operator import or_
 
 from compoundkin.base.display import ShortRepr
-from compoundkin.programs.graph.operation_graph import CONSTANT, INPUT, InputNumber, OperationGraph
+from compoundkin.programs.graph.operation_graph import BEFORE, CONSTANT, INPUT, InputNumber, OperationGraph
 
 # Strata: by which axes of (designs, poses) a value varies. What is given as one number counts as fixed by the design.
 FIXED_NUMBER, BY_DESIGN, BY_POSE, BY_BOTH = 0, 1, 2, 3
@@ -48,6 +48,20 @@ class FlatProgram(ShortRepr):
     after: tuple[int, ...]
     outputs: tuple[int, ...]
     carried: tuple[Carried, ...] = ()
+
+    @cached_property
+    def delayed(self) -> Mapping[int, int]:
+        """The inputs that are others a pose before, with those; at the first pose they are the same."""
+        nodes = self.graph.nodes
+        places = {nodes[k].given: k for k in self.inputs}
+        found = ((k, nodes[k].given) for k in self.inputs)
+        return {k: places[one._replace(part="0")] for k, one in found if one is not None and one.part == BEFORE}
+
+    @cached_property
+    def given(self) -> tuple[int, ...]:
+        """The inputs that a caller gives: carried numbers are none, nor are others a pose before."""
+        found = {one.given for one in self.carried} | self.delayed.keys()
+        return tuple(k for k in self.inputs if k not in found)
 
     def shape(self, node: int, designs: int, poses: int) -> tuple[int, int]:
         """Return the shape of a node's array."""

@@ -233,7 +233,7 @@ SIGN, TURNS = "sign", "turns"
 STEP = "step"
 
 
-# Part of a driver: its value a pose before.
+# Part of a driver: its value a pose before, which back ends take from its value; at the first pose it is that.
 BEFORE = "before"
 
 
