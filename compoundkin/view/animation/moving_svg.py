@@ -302,20 +302,23 @@ def _needed(times: Number, values: Number, deviation: float) -> Number:
     """
     keep = np.zeros(len(times), dtype=bool)
     keep[[0, -1]] = True
-    parts = [(0, len(times) - 1)]
-    while parts:
-        first, last = parts.pop()
-        if last - first < 2:
-            continue
-        whole = times[last] - times[first]
-        share = (times[first + 1 : last] - times[first]) / whole if whole > 0 else np.zeros(last - first - 1)
-        line = values[first] + share[:, None] * (values[last] - values[first])
-        off = np.max(np.abs(values[first + 1 : last] - line), axis=1)
-        worst = int(np.argmax(off))
-        if off[worst] > deviation:
-            middle = first + 1 + worst
-            keep[middle] = True
-            parts += [(first, middle), (middle, last)]
+    first, last = np.array([0]), np.array([len(times) - 1])
+    while len(open_parts := np.flatnonzero(last - first > 1)):
+        # the places between the ends of all parts at once, one part after another
+        first, last = first[open_parts], last[open_parts]
+        count = last - first - 1
+        part, begins = np.repeat(np.arange(len(first)), count), np.cumsum(count) - count
+        at = np.arange(len(part)) + (first + 1 - begins)[part]
+        start, whole = times[first], times[last] - times[first]
+        share = np.divide(times[at] - start[part], whole[part], out=np.zeros(len(at)), where=whole[part] > 0)
+        line = values[first][part] + share[:, None] * (values[last] - values[first])[part]
+        off = np.max(np.abs(values[at] - line), axis=1)
+        most = np.maximum.reduceat(off, begins)
+        worst = np.flatnonzero((off == most[part]) & (most > deviation)[part])
+        parted, foremost = np.unique(part[worst], return_index=True)
+        middle = at[worst[foremost]]
+        keep[middle] = True
+        first, last = np.concatenate([first[parted], middle]), np.concatenate([middle, last[parted]])
     return keep
 
 
