@@ -321,7 +321,7 @@ def solve_all_blocks(followed: FollowedPoses, order: int) -> tuple[Motion, Numbe
     Return also the poses whose rates may have lost their digits.
     """
     while True:
-        found = _solved_along(followed, order)
+        found = solve_blocks(followed, order)
         near = found.near if followed.is_dense else found.near | near_groups(followed.curve)
         searched = pass_through(followed.curve, near) if near else followed.curve
         curve = searched if searched.flips.keys() != followed.curve.flips.keys() else None
@@ -333,15 +333,19 @@ def solve_all_blocks(followed: FollowedPoses, order: int) -> tuple[Motion, Numbe
         if curve is not None:
             followed = replace(followed, curve=curve)
             continue
-        followed = replace(followed, curve=searched)
-        if not found.nearly:
-            return replace(found.motion, followed=followed), found.doubtful
-        followed, (designs, index, poses) = expanded(followed, found.nearly, order)
-        found.doubtful[designs, index] = False
-        return replace(found.motion, followed=followed).mended(designs, index, poses), found.doubtful
+        return with_expanded(found, replace(followed, curve=searched), order)
 
 
-class _SolvedBlocks(NamedTuple):
+def with_expanded(found: SolvedBlocks, followed: FollowedPoses, order: int) -> tuple[Motion, Number]:
+    """Return a motion with its poses at change points and next to them, and the poses whose rates are doubtful."""
+    if not found.nearly:
+        return replace(found.motion, followed=followed), found.doubtful
+    followed, (designs, index, poses) = expanded(followed, found.nearly, order)
+    found.doubtful[designs, index] = False
+    return replace(found.motion, followed=followed).mended(designs, index, poses), found.doubtful
+
+
+class SolvedBlocks(NamedTuple):
     """A motion in the configuration of a curve.
 
     Also the groups near limit positions, those so near that they may need their double root, and the poses whose rates
@@ -354,7 +358,7 @@ class _SolvedBlocks(NamedTuple):
     doubtful: Number
 
 
-def _solved_along(followed: FollowedPoses, order: int) -> _SolvedBlocks:
+def solve_blocks(followed: FollowedPoses, order: int) -> SolvedBlocks:
     """Solve block by block and gather."""
     keep_freed_memory()
     solving_order, given = followed.solving_order, followed.given
@@ -369,7 +373,7 @@ def _solved_along(followed: FollowedPoses, order: int) -> _SolvedBlocks:
         near = _near(block)
         where |= doubtful(solving_order, given, block, near)
         motion = Motion(structure, order, given, dict(block.world), failed, followed)
-        return _SolvedBlocks(motion, near, _nearly(block) if near else near, where)
+        return SolvedBlocks(motion, near, _nearly(block) if near else near, where)
     store = JoinedBlocks(designs, poses)
     for d, m in parts:
         part = given.cut(d, m)
@@ -380,7 +384,7 @@ def _solved_along(followed: FollowedPoses, order: int) -> _SolvedBlocks:
         nearly |= _nearly(block) if here else here
         where[d, m] |= doubtful(solving_order, part, block, here)
     motion = Motion(structure, order, given, store.poses(), store.failed, followed)
-    return _SolvedBlocks(motion, near, nearly, where)
+    return SolvedBlocks(motion, near, nearly, where)
 
 
 def _near(block: Block) -> set[int]:

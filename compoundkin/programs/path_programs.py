@@ -11,6 +11,7 @@ import numpy as np
 
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
+from compoundkin.kinematics.known_curves import KnownCurves
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import Description
 from compoundkin.programs.backends import chosen_back_end
@@ -33,13 +34,24 @@ from compoundkin.programs.dimensions import (
     mechanism_with,
 )
 from compoundkin.programs.drawn_approach import DrawnApproach
-from compoundkin.programs.limit_screening import LimitScreening, ScreenedDesigns, driver_value, negated_step
+from compoundkin.programs.limit_screening import (
+    LimitScreening,
+    ScreenedDesigns,
+    driver_value,
+    negated_step,
+    only_design,
+)
 from compoundkin.programs.path_values import PathValues
 from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.recorded_march import STEPS
 from compoundkin.programs.recording.recorded_mechanism import Recording
 from compoundkin.programs.recording.recorded_motion import ProgramOutput
-from compoundkin.programs.solved_designs import ProgramConfiguration, solve_designs, values_near_limits
+from compoundkin.programs.solved_designs import (
+    ProgramConfiguration,
+    inputs_of_numbers,
+    solve_designs,
+    values_near_limits,
+)
 
 # The name of the least margin among the results of a program; before a driver's, what its longest step and the copy of
 # its values are called. No output is named so.
@@ -59,6 +71,7 @@ class PathPrograms(ShortRepr):
     chosen_backend: str | None = None
     _variants: dict[Any, RecordedPath] = field(default_factory=dict)
     _programs: dict[Any, ReadyProgram[str]] = field(default_factory=dict)
+    _curves: KnownCurves = field(default_factory=KnownCurves)
 
     @property
     def backend(self) -> str:
@@ -235,11 +248,23 @@ class PathPrograms(ShortRepr):
 
     def solve(self, numbers: CallNumbers, order: int | None = None) -> Description:
         """Solve the designs of some numbers instead of computing them, in its configuration."""
+        order = self.order if order is None else order
+        is_one = numbers.extent[0] == 1 and len(numbers.driver_values) == 1
+        design = only_design(numbers) if is_one else None
+        if design is not None:
+            with np.errstate(all="ignore"):
+                known = self._curves.solved(design, partial(inputs_of_numbers, numbers), order)
+            if known is not None:
+                return known
         values = {one: one.value_in(numbers.given) for one in self.dimensions}
         # the drivers' values are among the numbers, and a law cannot have designs
         one_law = {one: value for one, value in values.items() if not (one.is_of_law and np.ndim(value))}
         mechanism = mechanism_with(self.stated, one_law, must_fit=False)
-        return solve_designs(mechanism, numbers, self.configuration, self.order if order is None else order)
+        found = solve_designs(mechanism, numbers, self.configuration, order)
+        if design is not None:
+            with np.errstate(all="ignore"):
+                self._curves.keep(design, found.motion)
+        return found
 
     def checked_values(self, numbers: CallNumbers, arrays: list[Number], least: Number) -> PathValues:
         """Return computed outputs, corrected near limits."""

@@ -16,11 +16,12 @@ from compoundkin.base.display import ShortRepr
 from compoundkin.base.errors import FewDigits, InvalidMechanism, NotAssembled, NotDetermined, UnassembledPoses, warn
 from compoundkin.kinematics.block import Block
 from compoundkin.kinematics.curve.modes import StatedModes
-from compoundkin.kinematics.driver_values import inputs
+from compoundkin.kinematics.driver_values import Inputs, inputs
 from compoundkin.kinematics.groups import GroupSolver
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.kinematics.solution import Description, first_configuration, solved, solving_order_of
+from compoundkin.kinematics.solving_order import SolvingOrder
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.profile_contact import as_profile_contact
 from compoundkin.programs.call_numbers import CallNumbers, numbers_of_designs
@@ -76,15 +77,20 @@ def solve_designs(
 ) -> Description:
     """Return the motion of all designs of some numbers; raises NotAssembled as `solve`."""
     solving_order = solving_order_of(designed)
+    with np.errstate(all="ignore"):
+        given = inputs_of_numbers(numbers, solving_order)
+        return solved(solving_order, given, configuration.signs, configuration.shown, order)
+
+
+def inputs_of_numbers(numbers: CallNumbers, solving_order: SolvingOrder) -> Inputs:
+    """Return the drivers of some numbers."""
     drives: dict[str, list[object]] = {}
     for one, value in numbers.given.items():
         if one.kind == DRIVE:
             drives.setdefault(one.name, []).append(np.broadcast_to(value, numbers.extent))
     columns = {name: (*values, *[0.0] * (4 - len(values))) for name, values in drives.items()}
     values, *rates = ({name: each[k] for name, each in columns.items()} for k in range(4))
-    with np.errstate(all="ignore"):
-        given = inputs(solving_order, values, rates[0], rates[1], rates[2])
-        return solved(solving_order, given, configuration.signs, configuration.shown, order)
+    return inputs(solving_order, values, rates[0], rates[1], rates[2])
 
 
 def seed_values(wanted: Collection[InputNumber], motion: Motion) -> dict[InputNumber, Number]:

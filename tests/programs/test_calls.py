@@ -530,3 +530,22 @@ def test_poses_beyond_a_gap_are_computed_without_solving(monkeypatch):
         for name, found in path([value]).items():
             wanted = motion.points[name.partition(".")[0]].position
             np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-12 * motion.size)
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("name", ["parallelogram", pytest.param("roberts-cognates", marks=pytest.mark.full)])
+def test_change_points_of_a_design_are_searched_once(monkeypatch, name):
+    mechanism = loaded(name)
+    path = ck.compile(mechanism, [f"{point}.velocity" for point in mechanism.carriers], backend="numpy")
+    # poses at change points and next to them, the ways to single poses, both senses, another turn
+    courses = [np.linspace(0.0, 2.0 * np.pi, 49), np.array([4.0]), np.linspace(4.4, -0.2, 30), np.array([8.9])]
+    motions = [ck.solve(mechanism, course, speed=2.0) for course in courses]
+    # of whole turns both ways where the design is asked for again, farther than before
+    path(np.linspace(2.0, 4.0, 9)), path(courses[0])
+    monkeypatch.setattr(
+        "compoundkin.kinematics.solution.pass_through", lambda *_: pytest.fail("change points are searched")
+    )
+    for course, motion in zip(courses, motions, strict=True):
+        for key, found in path(course, speed=2.0).items():
+            wanted = motion.points[key.partition(".")[0]].velocity
+            np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-9 * motion.size)

@@ -194,6 +194,52 @@ class ConfigurationCurve(ShortRepr):
                 found[k] = missing[0], tuple(np.unique(values.round(12)).tolist())
         return found
 
+    def along(self, path: DriverPath) -> ConfigurationCurve | None:
+        """Return the curve along another path of the same design and driver, with the change points that are known.
+
+        None where it goes farther, begins or ends beside a change point, or more than signs tell the configuration.
+        """
+        own, moving = self.path, self.path.moving
+        if self.paths or self.turns or self.branches or self.solving_order.followable - self.fixed.keys():
+            return None
+        if len(path.places) == 1:
+            return replace(self, path=path, flips={}, left={}, near_misses={})
+        if own.designs > 1 or path.designs > 1 or len(moving) != 1 or path.moving != moving:
+            return None
+        here, there = (_values_of(each, moving[0]) for each in (own, path))
+        gap, ratio = there.home - here.home, there.unit / here.unit
+        gap = float(wrapped(gap)) if own.wraps or path.wraps else gap
+        sense, (first, last) = float(np.sign(ratio)), path.ends
+
+        def placed(place: Number) -> Number:
+            return path.home + sense * (place - own.home)
+
+        low, high = sorted(map(placed, own.ends))
+        if not (
+            low - SAME <= first
+            and last <= high + SAME
+            and abs(gap / here.unit) <= SAME
+            and abs(abs(ratio) - 1.0) <= EVEN
+        ):
+            return None
+        flips = {}
+        for k, known in self.flips.items():
+            places = np.sort(placed(known[0][np.isfinite(known[0])]))
+            off = np.abs(places[:, None] - np.array([first, last, path.home]))
+            places = np.where(off[:, 0] < AT_END, first, np.where(off[:, 1] < AT_END, last, places))
+            if np.any((off > AT_END) & (off < BESIDE_END)) or np.any(off[:, 2] < BESIDE_END):
+                return None
+            places = places[(places >= first) & (places <= last)]
+            if len(places):
+                # beyond the whole path, which is on one side of it
+                flips[k] = np.where(places == last, np.nextafter(last, np.inf), places)[None]
+        if sum(bool(np.any((each <= first) | (each >= last))) for each in flips.values()) > 1:
+            return None
+        misses = {k: (one._replace(place=placed(one.place)) for one in each) for k, each in self.near_misses.items()}
+        missed = {k: tuple(one for one in each if first <= one.place <= last) for k, each in misses.items()}
+        left = {k: np.full(each.shape, np.inf) for k, each in flips.items()}
+        return replace(self, path=path, flips=flips, left=left, near_misses=missed)
+
     def with_followed(self, groups: Sequence[int]) -> ConfigurationCurve:
         """Return the curve on which some groups with signs are followed from where they are at home."""
         path, order, states = self.path, self.solving_order, dict(self.states)
@@ -237,6 +283,25 @@ class ConfigurationCurve(ShortRepr):
             found.chosen_by[k] = "sign" if k in self.fixed else ONLY if solver.modes == 1 else "default"
         open_loops = order.four_bars.keys() - self.fixed
         return _choose(found, last=max(open_loops)) if open_loops else found
+
+
+# A change point is at an end of a path within this part of a place; beside it, within that, it is found anew.
+AT_END, BESIDE_END = 1e-9, 1e-5
+# Places of two paths are as far from each other but for rounding of the drivers' values: this part.
+EVEN = 1e-10
+
+
+class _DriverValues(NamedTuple):
+    """The value of the only driver that moves along a path at home, and by how much it goes in a place."""
+
+    home: float
+    unit: float
+
+
+def _values_of(path: DriverPath, name: str) -> _DriverValues:
+    """Return the values of a driver along a path of one design."""
+    (home,), (first, last) = (path.at(np.array(places)).drives[name][0].ravel() for places in ([path.home], path.ends))
+    return _DriverValues(float(home), float((last - first) / (path.ends[1] - path.ends[0])))
 
 
 def _choose(
