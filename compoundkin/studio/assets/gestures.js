@@ -620,7 +620,7 @@ export class Gestures {
 
   // the unit of all lengths: the one that is written first, then none and those that are known
   unit() {
-    const own = this.studio.unit, known = ["", ...this.studio.structure.units].filter((one) => one !== own);
+    const own = this.studio.unit, known = ["", ...(this.studio.structure?.units ?? [])].filter((one) => one !== own);
     this.#form("Unit of all lengths; numbers stay", [["unit", "Lengths are in", [own, ...known].map((one) => [one, one || "no unit"])]], ({ unit }) => {
       if (unit !== own) this.studio.edit({ do: "unit", unit });
     });
