@@ -20,7 +20,7 @@ from compoundkin.kinematics.block import BLOCK, Block, blocks, places, repeated,
 from compoundkin.kinematics.curve.double_roots import rates_at
 from compoundkin.kinematics.curve.followed_poses import FollowedPoses
 from compoundkin.kinematics.curve.modes import GroupMode, modes_of
-from compoundkin.kinematics.derived.figures_of_forces import AsksForces
+from compoundkin.kinematics.derived.contract import AsksForces
 from compoundkin.kinematics.driver_values import Inputs, PoseGrid, fit
 from compoundkin.kinematics.jacobian import Jacobian, jacobian_of
 from compoundkin.kinematics.quantities import Table, names_meant, quantity, table_of

@@ -9,25 +9,23 @@ import numpy as np
 from compoundkin.model.elements import drawn, link
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.model.pairs.prismatic import slide
-from compoundkin.synthesis.linkage_poses import (
-    DRAWN,
-    FOLDED,
-    PinPlaces,
-    drawn_linkage,
-    driven_crank,
-    full_turn,
-    third_pin,
-)
 from compoundkin.synthesis.linkage_words import (
     CLOSURE,
+    DRAWN,
+    FOLDED,
     UNIT,
     Closure,
     Length,
+    PinPlaces,
     Place,
     QuickReturn,
     Real,
+    drawn_linkage,
+    driven_crank,
+    full_turn,
     linkage,
     polar_place,
+    third_pin,
     wrong,
 )
 

@@ -26,17 +26,10 @@ from compoundkin.model.pairs.prismatic import slide
 from compoundkin.model.pairs.slot import slot
 from compoundkin.model.profiles.synthesised import synthesise
 from compoundkin.synthesis.four_bars import four_bar, inverted_slider_crank, quick_return, slider_crank
-from compoundkin.synthesis.linkage_poses import (
-    DRAWN,
-    POSES,
-    PinPlaces,
-    drawn_linkage,
-    driven_crank,
-    full_turn,
-    third_pin,
-)
 from compoundkin.synthesis.linkage_words import (
     CLOSURE,
+    DRAWN,
+    POSES,
     UNIT,
     Angle,
     ArmOrSun,
@@ -45,12 +38,17 @@ from compoundkin.synthesis.linkage_words import (
     Follower,
     Length,
     LinkageKind,
+    PinPlaces,
     Place,
     Real,
     RiseLaw,
+    drawn_linkage,
+    driven_crank,
+    full_turn,
     kind_of,
     linkage,
     place,
+    third_pin,
     wrong,
 )
 from compoundkin.synthesis.six_bars import six_bar

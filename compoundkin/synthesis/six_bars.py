@@ -12,8 +12,23 @@ from compoundkin.model.elements import drawn, drive, link
 from compoundkin.model.geometry import deg
 from compoundkin.model.mechanism import Mechanism
 from compoundkin.synthesis.four_bars import check_closes, four_bar_pose, grashof
-from compoundkin.synthesis.linkage_poses import DRAWN, PinPlaces, drawn_linkage, driven_crank, place_on, third_pin
-from compoundkin.synthesis.linkage_words import UNIT, Closure, Length, Place, SixBar, linkage, place, polar_place, wrong
+from compoundkin.synthesis.linkage_words import (
+    DRAWN,
+    UNIT,
+    Closure,
+    Length,
+    PinPlaces,
+    Place,
+    SixBar,
+    drawn_linkage,
+    driven_crank,
+    linkage,
+    place,
+    place_on,
+    polar_place,
+    third_pin,
+    wrong,
+)
 
 # The places that each kind of six-bar needs beside its lengths.
 _SIX_BARS: Mapping[str, tuple[str, ...]] = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, get_args
 
@@ -149,16 +149,13 @@ def drivers_of(
     if marked:
         notes = (f"several joints are marked as driven, that of {records[marked[0]].where} is taken",)
         return _that_drive(records, marked[:1], problems), notes
-    found = next(_could_drive(records), None)
+    could = (k for k, one in enumerate(records) if one.kind in ("R", "P") and len(one.links) == 2)
+    found = next(could, None)
     if found is None:
         if records:
             problems.add("", "no joint can drive", "an R or P joint of two links can")
         return (), ()
     return (found,), (f"no joint is marked as driven; the first that can be is taken, {records[found].where}",)
-
-
-def _could_drive(records: Iterable[JointRecord]) -> Iterator[int]:
-    return (k for k, record in enumerate(records) if record.kind in ("R", "P") and len(record.links) == 2)
 
 
 def _that_drive(records: Sequence[JointRecord], numbers: Sequence[int], problems: Problems) -> tuple[int, ...]:

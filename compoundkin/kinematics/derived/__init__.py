@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from compoundkin.base.arrays import Number
-from compoundkin.kinematics.derived.contract import Figure, HasQuantities, Lack
-from compoundkin.kinematics.derived.figures_of_forces import force_figures
+from compoundkin.kinematics.derived.contract import Figure, HasQuantities, Lack, force_figures
 from compoundkin.kinematics.derived.guides import coriolis, no_coriolis, no_pressure_angle, pressure_angle
 from compoundkin.kinematics.derived.transmission_angle import no_angle, no_index, transmission_angle, transmission_index
 from compoundkin.kinematics.derived.velocity_ratio import no_turning, ratio_of, unit_of_ratio

@@ -1,15 +1,21 @@
-"""What quantities are read from, and what a figure is: a quantity that only some points, links or pairs have."""
+"""What quantities are read from, and what a figure is: a quantity that only some points, links or pairs have.
+
+Figures of forces are asked of the forces of a motion, which know their values.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Protocol, runtime_checkable
 
 from compoundkin.base.arrays import Number
+from compoundkin.base.display import display_function
 from compoundkin.base.poses import Pose
 from compoundkin.kinematics.driver_values import Inputs, PoseGrid
 from compoundkin.kinematics.solving_order import SolvingOrder
+from compoundkin.model.attributes import FORCES, Kind
 from compoundkin.model.mechanism import Mechanism
 
 
@@ -95,3 +101,51 @@ class Figure:
         # a ratio of rates takes velocities, and is no rate itself; nor is a force
         found: dict[str, Any] = {"unit": self.unit(motion, name), "order": 0} if self.unit else {}
         return {**found, "scale": self.scale(motion, name)} if self.scale else found
+
+
+def force_figures(kind: Kind) -> Mapping[str, Figure]:
+    """Return the figures of forces that points, links, pairs or drivers have."""
+    return {word: _figure(kind, word) for word in FORCES[kind]}
+
+
+def _figure(kind: Kind, word: str) -> Figure:
+    """Return a figure that is asked of forces. They are known when it is asked for."""
+
+    def own() -> Figure:
+        found: Figure = display_function("force_figure")(kind, word)
+        return found
+
+    def values(motion: HasQuantities, name: str) -> Number:
+        return own().values(forces_of(motion), name)
+
+    def lack(motion: HasQuantities, name: str) -> Lack | None:
+        if motion.mechanism.units is None:
+            return Lack("the mechanism has no units of mass and force", "state them: Mechanism(..., units={...})")
+        return own().lack(motion, name)
+
+    def unit(motion: HasQuantities, name: str) -> str:
+        asked = own().unit
+        return asked(forces_of(motion), name) if asked else ""
+
+    def scale(motion: HasQuantities, name: str) -> float:
+        asked = own().scale
+        return asked(forces_of(motion), name) if asked else 0.0
+
+    return Figure(values, lack, unit, scale)
+
+
+class AsksForces:
+    """A motion whose forces can be asked for."""
+
+    loading: Mapping[str, Any]
+
+    @cached_property
+    def forces(self) -> Any:
+        """Its forces, of `force_analysis` with what is in `loading`."""
+        return display_function("forces")(self, **self.loading)
+
+
+def forces_of(motion: HasQuantities) -> Any:
+    """Return the forces of a motion. They are found when they are first asked for."""
+    whole: Any = motion
+    return whole.forces

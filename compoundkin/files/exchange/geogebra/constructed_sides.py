@@ -329,11 +329,10 @@ class PlacedBodies:
                     self.points[letter] = self._point(letter, self.place(name, way))
 
     def _point(self, letter: str, place: PolarSum) -> str:
-        return place.point if place.point and self._is_own(letter, place) else self.build.point(letter, place.text)
-
-    def _is_own(self, letter: str, place: PolarSum) -> bool:
-        """Whether a place is the very point, not another one at the same place."""
-        return place.point is not None and place.point not in self.points.values()
+        # the very point, not another one at the same place
+        if place.point and place.point not in self.points.values():
+            return place.point
+        return self.build.point(letter, place.text)
 
     def in_body(self, link: str, way: PolarSum) -> PolarSum:
         """Return a place of a link from its body's first point on."""

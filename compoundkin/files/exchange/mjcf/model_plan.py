@@ -196,7 +196,8 @@ def _plan(shown: PosedMechanism, tree: JointTree, driven: set[str]) -> ModelPlan
     problems = [*_open(shown), *_small(shown, units, masses)]
     if problems:
         raise InvalidInput(problems, heading=f"{shown.mechanism.title!r} cannot be said in MJCF")
-    ties = {chain.pair.name: chain.tie for chain in _carrying(tree) if chain.tie}
+    carrying = (branch.chain for branch in tree.carried.values())
+    ties = {chain.pair.name: chain.tie for chain in carrying if chain.tie}
     ties.update({pair.name: geared_tie(tree, pair, shown.ends[pair.name]) for pair in shown.pairs if pair.is_geared})
     for free in shown.structure.passive:
         ties[f"{free.link} on {free.on}"] = still_tie(tree, free.link, free.on)
@@ -213,10 +214,6 @@ def _plan(shown: PosedMechanism, tree: JointTree, driven: set[str]) -> ModelPlan
         else:
             connected.append(chain)
     return ModelPlan(shown, tree, units, masses, tuple(connected), halves, ties, told)
-
-
-def _carrying(tree: JointTree) -> Iterator[JointChain]:
-    return (branch.chain for branch in tree.carried.values())
 
 
 # What a link weighs where nothing has a mass; a round number, so that it is seen to be made up.
