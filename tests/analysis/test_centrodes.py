@@ -11,7 +11,7 @@ import compoundkin as ck
 from compoundkin.analysis import coupler
 from compoundkin.files import load
 from tests.analysis.relative_motions import catalog, fastest, random_mechanism, turning_pairs
-from tests.catalog import CHOSEN, each
+from tests.catalog import THIRD, each
 from tests.support import differences, drawn_values
 
 pytestmark = pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
@@ -128,7 +128,7 @@ def _world(motion: ck.results.Motion, link: str, on: str) -> Any:
     return rows / np.linalg.norm(rows, axis=-1, keepdims=True)
 
 
-@each(CHOSEN)
+@each(THIRD)
 def test_a_point_at_the_pole_stands_still_all_others_turn_around_it_and_centrodes_roll(name: str) -> None:
     """The pole's velocities come from different series: equal as vectors means equal arcs and a common tangent."""
     motion = catalog(name)

@@ -10,14 +10,12 @@ import pytest
 import compoundkin as ck
 from compoundkin.configurations.circuit_search import Circuits
 from compoundkin.files import load
-from compoundkin.files.shipped_mechanisms import shipped
 from tests import catalog
 from tests.configurations.mechanisms import four_bar
 from tests.configurations.test_random import check_counts
-from tests.support import EVERYTHING
 
 # Those that are special too: change points, several drivers, slides as drivers, gears.
-CHOSEN = sorted({*(shipped()[::2] if EVERYTHING else catalog.CHOSEN), "parallelogram", "antiparallelogram",
+CHOSEN = sorted({*catalog.THIRD, "parallelogram", "antiparallelogram",
                  "scott-russell", "pantograph", "stephenson-iii", "hydraulic-digger", "planetary-train",
                  "rack-and-pinion-steering", "class-iii-six-bar"})  # fmt: skip
 

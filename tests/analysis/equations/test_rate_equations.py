@@ -27,7 +27,7 @@ def rates(motion: ck.results.Motion, unknown: Unknown, order: int) -> np.ndarray
     return motion.pairs[unknown.owner].derivative(order) if pair is not None and pair.code == "P" else None
 
 
-@catalog.each(catalog.CHOSEN)
+@catalog.each(catalog.THIRD)
 def test_solutions_are_the_rates_that_the_groups_give(name: str) -> None:
     motion = catalog.motion(name)
     equations = ck.loop_equations(motion.structure, order=2)

@@ -15,7 +15,7 @@ from compoundkin.analysis.characteristics.outputs import chosen_outputs
 from compoundkin.base.arrays import Number
 from compoundkin.kinematics.extremes import between, extremes, zeros
 from compoundkin.kinematics.quantities import quantity
-from tests.catalog import CHOSEN, each, mechanism
+from tests.catalog import THIRD, each, mechanism
 from tests.catalog import motion as solved
 from tests.support import examples
 
@@ -141,7 +141,7 @@ def shown(motion: ck.results.Motion) -> Iterator[str]:
 ONE_WAY = {"jaw-crusher-loaded", "shaper-cutting-force"}
 
 
-@each(CHOSEN)
+@each(THIRD)
 def test_extremes_do_not_depend_on_the_poses(name: str) -> None:
     """At the file's own step, and with four poses between every two: to 1e-6 of the range."""
     coarse = solved(name)
