@@ -114,6 +114,8 @@ class CourseSearch(ShortRepr):
         programs = course_programs(self.squared, self.designs.path.compiled.backend)
         if programs is not None and number >= MANY and samples > 2:
             few, *own = self._few_peaks(sampled, signs, programs)
+            if len(few) == len(left):
+                return np.array(own).reshape(2, -1, number)
             found[:, few], left[few] = own, False
         for k, sign in enumerate(signs):
             rows = np.flatnonzero(left[k * number : (k + 1) * number])
@@ -128,7 +130,7 @@ class CourseSearch(ShortRepr):
 
         First are their indices among (signs, designs): of those whose peaks are smooth.
         """
-        number, last = len(sampled.values), self.designs.poses - 1.0
+        number = len(sampled.values)
         counted = programs.counted_peaks(sampled.values, sampled.high, sampled.low)
         count, first, second = (np.concatenate([counted[sign][k] for sign in signs]) for k in range(3))
         few = np.flatnonzero((count == 1.0) | (count == 2.0))
@@ -141,7 +143,23 @@ class CourseSearch(ShortRepr):
         f = DesignCourses(self, few.take(which) % number)
         windows, _ = f.windows_around(k.astype(int), sampled.values.shape[1], sampled.parts)
         found = self._vertices(f, windows, best.some(which), programs)
-        one, other = found.some(slice(len(few))), found.some(slice(len(few), None))
+        value, place, is_right, infinite = self._best_of_few(best, found, pairs, programs)
+        is_right[infinite[sampled.pass_infinity(few.take(infinite) % number, value.take(infinite))]] = False
+        if is_right.all():
+            return few, value, place
+        right = np.flatnonzero(is_right)
+        return few.take(right), value.take(right), place.take(right)
+
+    def _best_of_few(
+        self, best: SampledBest, found: Vertices, pairs: Number, programs: CoursePrograms
+    ) -> tuple[Number, Number, Number, Number]:
+        """Return the greatest of samples and of vertices, and their places, (n,).
+
+        Vertices are those of all samples, then the other ones of `pairs`. Besides which are right, and which may be
+        infinite, by index.
+        """
+        last, number = self.designs.poses - 1.0, len(best.value)
+        one, other = found.some(slice(number)), found.some(slice(number, None))
         value, place, far = programs.best_of_few(best, [one], last)
         is_right, narrowed = one.is_right > 0.0, one.is_narrowed > 0.0
         if len(pairs):
@@ -149,10 +167,7 @@ class CourseSearch(ShortRepr):
             value[pairs], place[pairs], far[pairs] = of_two
             is_right[pairs] &= other.is_right > 0.0
             narrowed[pairs] |= other.is_narrowed > 0.0
-        rows = np.flatnonzero(narrowed & (far > 0.0))
-        is_right[rows[sampled.pass_infinity(few.take(rows) % number, value.take(rows))]] = False
-        right = np.flatnonzero(is_right)
-        return few.take(right), value.take(right), place.take(right)
+        return value, place, is_right, np.flatnonzero(narrowed & (far > 0.0))
 
     def _vertices(self, f: DesignCourses, windows: Windows, best: SampledBest, programs: CoursePrograms) -> Vertices:
         """Return the vertices of courses in windows, which narrow where they are not smooth, with their values."""
@@ -177,8 +192,8 @@ class CourseSearch(ShortRepr):
             span = best - least
             sought = SoughtPeaks(rows, np.full(len(rows), sign), largest.take(rows), span.take(rows))
             f = DesignCourses(self, designs.take(rows))
-            windows, places = f.windows_around(k, sampled.values.shape[1], sampled.parts)
-            offers += peaks(f, sought, windows, places, best, self.designs.poses - 1, NARROWINGS)
+            windows, table = f.windows_around(k, sampled.values.shape[1], sampled.parts)
+            offers += peaks(f, sought, windows, table.take(k, axis=0), best, self.designs.poses - 1, NARROWINGS)
         value, place, _ = best_of(offers, largest, np.asarray(self.squared))
         # what is far beyond all others may be so
         far = value > POLE * np.maximum(np.maximum(least, -best), 0.0)
@@ -203,12 +218,15 @@ class DesignCourses(ShortRepr):
         return Windows(low, high, self._at(which, places), self._squared(low)), places
 
     def windows_around(self, k: Number, samples: int, parts: int) -> tuple[Windows, Number]:
-        """Return windows around samples `k` (n,) of so many, `parts` of them from pose to pose; places of theirs."""
+        """Return windows around samples `k` (n,) of so many, `parts` of them from pose to pose.
+
+        Besides the places of the samples of all such windows, (samples, samples of one).
+        """
         every = np.arange(float(samples))
         low, high = np.maximum(every - 1.0, 0.0) / parts, np.minimum(every + 1.0, samples - 1.0) / parts
         table, own, search = Windows.samples(low, high), low[k], self.search
         values = search.designs.values_at(search.name, self.rows, table, search.is_angle, k)
-        return Windows(own, high[k], values, self._squared(own)), table.take(k, axis=0)
+        return Windows(own, high[k], values, self._squared(own)), table
 
     def _squared(self, like: Number) -> Number:
         return np.broadcast_to(self.search.squared, len(like))
