@@ -13,7 +13,7 @@ from tests.kinematics.test_configuration_curve import hard_mechanism, parallelog
 
 
 @pytest.mark.parametrize("beyond", [1e-3, 1e-6, 1e-9, -1e-6])
-@pytest.mark.parametrize("poses", [36, 73, *(pytest.param(count, marks=pytest.mark.full) for count in (361, 1000))])
+@pytest.mark.parametrize("poses", [36, 73, pytest.param(1000, marks=pytest.mark.full)])
 def test_a_parallelogram_whose_rods_differ_by_a_hair(beyond: float, poses: int) -> None:
     motion = quietly(parallelogram(beyond), {"crank": np.linspace(0.0, 2.0 * np.pi, poses)})
     assert ck.verify(motion).passed
