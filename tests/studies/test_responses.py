@@ -98,17 +98,21 @@ def test_figures_do_not_move_with_the_grid(beside: float) -> None:
         assert np.abs(place - end.at.place).max() < 1e-8
 
 
-MANY_DESIGNS = 512
+MANY_DESIGNS = 1024
 
 
 @pytest.mark.parametrize(
     ("name", "step"),
     [
-        ("G.x.stroke", 5.0), ("bar.angle.time_ratio", 5.0), ("plate.transmission_angle.least", 10.0),
-        ("plate.transmission_angle.greatest", 30.0), ("G.velocity.length.least", 30.0),
-        ("G.acceleration.length.greatest", 5.0), ("crank.angle.greatest", 30.0),
+        ("G.x.stroke", 10.0),
+        ("plate.transmission_angle.least", 10.0),
+        ("G.velocity.length.least", 30.0),
+        pytest.param("bar.angle.time_ratio", 5.0, marks=pytest.mark.full),
+        pytest.param("plate.transmission_angle.greatest", 30.0, marks=pytest.mark.full),
+        pytest.param("G.acceleration.length.greatest", 5.0, marks=pytest.mark.full),
+        pytest.param("crank.angle.greatest", 30.0, marks=pytest.mark.full),
     ],
-)  # fmt: skip
+)
 def test_many_designs_have_the_extremes_of_few(name: str, step: float) -> None:
     """Compiled programs find what the search of a few designs finds, which knows nothing of them."""
     ranges = {**RANGES, "crank.D.x": variation_of("crank.D.x", (13.0, 24.0))}  # some do not assemble
@@ -122,7 +126,7 @@ def test_many_designs_have_the_extremes_of_few(name: str, step: float) -> None:
         with suppress_pose_warnings():
             return response.values(designs), response.slopes(designs)
 
-    parts = [found(range(k, k + 128)) for k in range(0, MANY_DESIGNS, 128)]
+    parts = [found(range(k, k + 512)) for k in range(0, MANY_DESIGNS, 512)]
     for whole, part in zip(found(range(MANY_DESIGNS)), zip(*parts, strict=True), strict=True):
         expected = np.concatenate(part, axis=-1)
         known = ~np.isnan(expected)
