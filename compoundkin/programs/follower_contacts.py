@@ -302,7 +302,11 @@ class SearchedProfile(ShortRepr):
             arm, x, y = start - centre, -2.0 * centre.real, -2.0 * centre.imag
             rest = away * away + dot(centre, centre) - dot(arm, arm)
             rows = np.ones(len(start)), 2.0 * away, x, y, away * x, away * y, rest
-        return np.array(rows).T @ self._columns(path.straight)
+        levels = np.array(rows).T @ self._columns(path.straight)
+        if self.pair.turns:
+            # the same sample at both ends, where a product may be rounded otherwise
+            levels[:, -1] = levels[:, 0]
+        return levels
 
     def _columns(self, straight: bool) -> Number:
         """Return what levels know of samples, (numbers, samples)."""

@@ -121,6 +121,13 @@ def test_at_a_joint_of_pieces_accelerations_are_those_of_the_side_that_solve_tak
         np.testing.assert_allclose(found["P.acceleration"], motion.points["P"].acceleration, rtol=0.0, atol=1e-12)
 
 
+@pytest.mark.usefixtures("alone")
+def test_a_contact_at_the_first_sample_is_the_same_in_a_long_motion():
+    path = ck.compile(loaded("oscillating-flat-follower"), "P.position", backend="numpy")
+    whole, first = path(np.linspace(0.0, TURN, 1500)), path([0.0])
+    np.testing.assert_allclose(whole["P.position"][[0, -1]], first["P.position"][0], rtol=0.0, atol=1e-12)
+
+
 def test_polynomials_are_the_profile():
     law = ck.laws.program(ck.laws.rise(0.4, over=2.0), ck.laws.fall(0.4, over=2.0), ck.laws.dwell(over=TURN - 4.0))
     curve = ck.profiles.synthesise(law, base=1.0, follower="roller", roller=0.2).curve
