@@ -15,6 +15,7 @@ import compoundkin as ck
 from compoundkin.base.errors import InvalidMechanism
 from compoundkin.files import dumps, loads
 from compoundkin.files.reader import read
+from tests.support import EVERYTHING
 
 Place = tuple[str | int, ...]
 DELETED = object()
@@ -170,8 +171,9 @@ def written(place: Place) -> str:
 
 def test_any_value_of_any_sort_anywhere_is_read_or_refused(document: dict[str, Any]) -> None:
     refused: list[InvalidMechanism] = []
-    for place in places(document):
-        for value in WRONG:
+    thin = 1 if EVERYTHING else 3
+    for number, place in enumerate(places(document)):
+        for value in WRONG[number % thin :: thin]:
             try:
                 read(changed(document, place, value))
             except InvalidMechanism as error:
