@@ -35,6 +35,8 @@ from compoundkin.programs.recorded_path import PathVariants
 
 # So many plain numbers are kept as arrays, and so many plans.
 NUMBERS_KEPT, PLANS_KEPT = 256, 64
+# So few values are copied in less time than it takes to ask where they lie.
+FEW_VALUES = 1_000
 # The greatest finite number: greater whole numbers are not floats, and comparisons with NaN are false.
 LARGEST_FLOAT = float(np.finfo(float).max)
 # Plain numbers by their types: what they are read as.
@@ -420,11 +422,16 @@ class ReadCall:
         plan = self.plan
         return CallNumbers(dict(zip(plan.inputs, self.given, strict=True)), plan.shape, plan.still(self.zero))
 
-    def hold(self, others: Collection[Number] | None = None) -> None:
-        """Put copies in place of the values that are held, but for those that are surely apart from all `others`."""
+    def hold(self) -> None:
+        """Put copies in place of the values that are held."""
+        for k in self.plan.held.values():
+            self.given[k] = self.given[k].copy()
+
+    def keep_apart(self, others: Collection[Number]) -> None:
+        """Put copies in place of the values that are held and may lie in the memory of some arrays."""
         for k in self.plan.held.values():
             value = self.given[k]
-            if others is None or True in [np.may_share_memory(value, other) for other in others]:
+            if value.size < FEW_VALUES or True in [np.may_share_memory(value, other) for other in others]:
                 self.given[k] = value.copy()
 
     def is_finite(self) -> bool:

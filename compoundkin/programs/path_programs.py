@@ -176,7 +176,7 @@ class PathPrograms(ShortRepr):
                 given = None
                 if out is not None:
                     given = self._arrays_of(out, program.vectors, plan.shape)
-                    read.hold(given.values())
+                    read.keep_apart(given.values())
                 arrays, count = program.run(read, threads, given), len(self.names)
                 rest = arrays[count:]
                 del arrays[count:]

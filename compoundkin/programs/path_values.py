@@ -68,9 +68,10 @@ class PathValues(Mapping[str, Any]):
         """
         if self.shape != shape or not shape:
             return None
+        size = prod(shape)
         for name, array in self.found.items():
             kind = vectors.get(name)
-            if kind is None or array.dtype is not (COMPLEX if kind else FLOAT) or array.size != prod(shape):
+            if kind is None or array.dtype is not (COMPLEX if kind else FLOAT) or array.size != size:
                 return None
             if array.flags.num & PLAIN_FLAGS != PLAIN_FLAGS:
                 return None
