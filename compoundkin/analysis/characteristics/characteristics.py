@@ -147,13 +147,13 @@ def characteristics(
     groups = index_names(own)
     pressures, guides = pressure_names(own), coriolis_names(own)
     moving = moving_drivers(own, 0)
-    ratios = ratio_names(own, chosen, 0)
+    ratios = ratio_names(own, chosen)
     found = (one for output in chosen for one in output.measures(own))
     measures = {one.name if isinstance(one, Measure) else one: one for one in found}
     besides = dict.fromkeys((*groups, *pressures, *guides, *ratios.values()))
-    ranges = ranges_of(own, 0, [*measures.values(), *(name for name in besides if name not in measures)])
+    ranges = ranges_of(own, [*measures.values(), *(name for name in besides if name not in measures)])
     relevant = groups_of_outputs(own.structure, chosen)
-    figures = tuple(OutputFigures(own, 0, one, ranges, dwell, straight) for one in chosen)
+    figures = tuple(OutputFigures(own, one, ranges, dwell, straight) for one in chosen)
     return Characteristics(
         motion,
         design,
@@ -161,7 +161,7 @@ def characteristics(
         group_figures(own, groups, ranges, relevant),
         {name: ranges[name] for name in pressures if name in ranges},
         {name: ranges[name] for name in guides if name in ranges},
-        advantages(own, 0, chosen, ratios, ranges),
+        advantages(own, chosen, ratios, ranges),
         _dead_points_of_driver(own, figures),
         tuple(_notes(own, moving)),
     )
@@ -222,7 +222,7 @@ def _dead_points_of_driver(motion: Motion, outputs: Iterable[OutputFigures]) -> 
     # quantities of rates, such as forces, have no limit there
     named = [one.output.coordinate for one in outputs if one.least is not None]
     known = [quantity(there, name) for name in named if derivative_order(name) == 0]
-    at = drivers_at(motion, 0, places.tolist())
+    at = drivers_at(motion, places.tolist())
     return tuple(
         DriverDeadPoint(
             at[k],

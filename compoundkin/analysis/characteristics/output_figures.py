@@ -71,7 +71,6 @@ class OutputDwells:
     """
 
     motion: Motion
-    design: int
     coordinate: str
     cycle: float
     unit: str
@@ -85,10 +84,8 @@ class OutputDwells:
 
     def may_dwell(self, part: float) -> bool:
         """Return, from the poses alone, whether a dwell may last a part of the motion."""
-        shape = self.motion.inputs.designs, self.motion.inputs.poses
-        found = quantity(self.motion, self.coordinate).values
-        values = np.broadcast_to(found, self.motion.shape).reshape(shape)[self.design]
-        return longest_run(values, self.tolerance, bool(self.cycle)) >= part * (shape[1] - 1) - 2.0
+        values = np.ravel(np.broadcast_to(quantity(self.motion, self.coordinate).values, self.motion.shape))
+        return longest_run(values, self.tolerance, bool(self.cycle)) >= part * (self.motion.inputs.poses - 1) - 2.0
 
     @cached_property
     def _sampled(self) -> Sampled:
@@ -102,13 +99,13 @@ class OutputDwells:
         return Sampled(places[good], values[good], self._at, self.cycle, advance)
 
     def _at(self, s: Number) -> Number:
-        there = between(self.motion, self.design, np.ravel(s), derivative_order(self.coordinate))
+        there = between(self.motion, 0, np.ravel(s), derivative_order(self.coordinate))
         return np.ravel(quantity(there, self.coordinate).values)
 
     def _dwell(self, span: DwellSpan) -> Dwell:
         around = bool(self.cycle) and span.last > self.motion.inputs.poses - 1
         ends = [span.first, span.last - self.cycle if around else span.last]
-        begin, end, first, last = drivers_at(self.motion, self.design, [*ends, 0.0, self.cycle])
+        begin, end, first, last = drivers_at(self.motion, [*ends, 0.0, self.cycle])
         name = next(iter(begin))
         far = (
             quantity_number(end[name])
@@ -286,7 +283,6 @@ class OutputFigures:
     """
 
     motion: Motion
-    design: int
     output: Output
     ranges: Mapping[str, Range]
     dwell: float
@@ -333,10 +329,9 @@ class OutputFigures:
     @cached_property
     def pieces(self) -> tuple[PieceStroke, ...]:
         """The strokes over the assembled pieces of a motion with gaps."""
-        failed = np.broadcast_to(self.motion.failed != 0, (self.motion.inputs.designs, self.motion.inputs.poses))
-        if self.least is None or self.motion.inputs.poses < 2 or not failed[self.design].any():
+        if self.least is None or self.motion.inputs.poses < 2 or not self.motion.failed.any():
             return ()
-        return strokes_by_piece(self.motion, self.design, self.output.coordinate)
+        return strokes_by_piece(self.motion, self.output.coordinate)
 
     @property
     def speed(self) -> PlacedFigure | None:
@@ -355,10 +350,10 @@ class OutputFigures:
             return ()
         if (turning := self._at_extremes()) is not None:
             return turning
-        if self.motion.time is None and len(moving_drivers(self.motion, self.design)) != 1:
+        if self.motion.time is None and len(moving_drivers(self.motion, 0)) != 1:
             return ()
         found = dead_points(self.motion, self.output.coordinate).at
-        return self._figures(np.sort(found.place[found.design == self.design]))
+        return self._figures(np.sort(found.place))
 
     @cached_property
     def quick_return(self) -> QuickReturn | None:
@@ -369,14 +364,14 @@ class OutputFigures:
             return None
         assert self.least is not None
         assert self.greatest is not None
-        return quick_return_between(self.motion, self.design, self.cycle, self.name, (self.least, self.greatest))
+        return quick_return_between(self.motion, self.cycle, self.name, (self.least, self.greatest))
 
     @property
     def _turns_on(self) -> bool:
         """Whether it ends a turn further after the cycle."""
         assert self.stroke is not None
         course = quantity(self.motion, self.output.coordinate).values
-        row = np.broadcast_to(course, self.motion.shape).reshape(self.motion.inputs.designs, -1)[self.design]
+        row = np.broadcast_to(course, self.motion.shape).reshape(-1)
         return bool(abs(row[-1] - row[0]) > SAME_PLACE * quantity_number(self.stroke))
 
     @property
@@ -398,7 +393,6 @@ class OutputFigures:
         assert self.stroke is not None
         return OutputDwells(
             self.motion,
-            self.design,
             self.output.coordinate,
             self.cycle,
             self.stroke.unit,
@@ -412,7 +406,7 @@ class OutputFigures:
         if not self.output.is_point:
             return None
         try:
-            found = path_features(self.motion, self.output.owner, None, self.design)
+            found = path_features(self.motion, self.output.owner)
         except CompoundkinError:
             return None
         return replace(found, tolerance=self.straight * found.size)
@@ -420,7 +414,7 @@ class OutputFigures:
     @cached_property
     def cycle(self) -> float:
         """The number of poses of a closed cycle, 0 for any other motion."""
-        closed = self.motion.inputs.poses > 1 and bool(closed_cycles(self.motion)[self.design])
+        closed = self.motion.inputs.poses > 1 and bool(closed_cycles(self.motion)[0])
         return float(self.motion.inputs.poses - 1) if closed else 0.0
 
     @property
@@ -433,9 +427,9 @@ class OutputFigures:
         if not len(places):
             return ()
         found = quantity(
-            between(self.motion, self.design, places, derivative_order(self.output.coordinate)), self.output.coordinate
+            between(self.motion, 0, places, derivative_order(self.output.coordinate)), self.output.coordinate
         )
-        at, values = drivers_at(self.motion, self.design, places.tolist()), np.ravel(found.values)
+        at, values = drivers_at(self.motion, places.tolist()), np.ravel(found.values)
         return tuple(
             PlacedFigure(scalar_quantity(found.name, values[k], found.unit), at[k], float(place))
             for k, place in enumerate(places.tolist())
@@ -446,11 +440,10 @@ class OutputFigures:
         if self.motion.order < 1 or self.motion.time is not None:
             return None
         found = quantity(self.motion, self.output.rate).values
-        shape = self.motion.inputs.designs, self.motion.inputs.poses
-        rates = np.broadcast_to(found, self.motion.shape).reshape(shape)[self.design]
+        rates = np.ravel(np.broadcast_to(found, self.motion.shape))
         assert self.least is not None
         assert self.greatest is not None
-        inside = [one for one in (self.least, self.greatest) if 0.0 < one.place < shape[1] - 1.0]
+        inside = [one for one in (self.least, self.greatest) if 0.0 < one.place < self.motion.inputs.poses - 1.0]
         turns = np.count_nonzero(rates[:-1] * rates[1:] < 0.0)
         if np.any(rates == 0.0) or not np.isfinite(rates).all() or turns != len(inside):
             return None
@@ -481,13 +474,13 @@ class QuickReturn:
 
 
 def quick_return_between(
-    motion: Motion, design: int, cycle: float, name: str, ends: tuple[PlacedFigure, PlacedFigure]
+    motion: Motion, cycle: float, name: str, ends: tuple[PlacedFigure, PlacedFigure]
 ) -> QuickReturn | None:
     """Return the durations of the strokes between the least and the greatest value of a cycle of so many poses.
 
     None unless one driver makes one full turn or the motion is in time.
     """
-    begin, end = drivers_at(motion, design, [0.0, cycle])
+    begin, end = drivers_at(motion, [0.0, cycle])
     driver, first = next(iter(begin.items()))
     whole = quantity_number(end[driver]) - quantity_number(first)
     if motion.time is None and not _goes_round(begin, whole):
@@ -525,12 +518,12 @@ class PieceStroke:
         return scalar_quantity(self.greatest.name.replace(GREATEST, STROKE), far, self.greatest.unit)
 
 
-def strokes_by_piece(motion: Motion, design: int, coordinate: str) -> tuple[PieceStroke, ...]:
+def strokes_by_piece(motion: Motion, coordinate: str) -> tuple[PieceStroke, ...]:
     """Return the strokes of an output over the assembled pieces of a motion."""
     whole, (found,) = pieces(motion), extremes(motion, coordinate, by_piece=True)
     made = []
-    for k in np.flatnonzero(whole.begin.design == design).tolist():
-        begin, end = drivers_at(motion, design, [float(whole.begin.place[k]), float(whole.end.place[k])])
+    for k in range(len(whole.begin.place)):
+        begin, end = drivers_at(motion, [float(whole.begin.place[k]), float(whole.end.place[k])])
         values = (scalar_quantity(f"{coordinate}.{word}", float(one.value[k]), found.unit)
                   for word, one in ((LEAST, found.least), (GREATEST, found.greatest)))  # fmt: skip
         made.append(PieceStroke(begin, end, *values))

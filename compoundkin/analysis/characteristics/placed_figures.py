@@ -74,13 +74,13 @@ def scalar_quantity(name: str, value: float, unit: str) -> Quantity:
     return Quantity(name, unit, float(value))
 
 
-def drivers_at(motion: Motion, design: int, places: Sequence[float]) -> list[dict[str, Quantity]]:
-    """Return the values of the moving drivers at places, of all drivers if none moves; the time comes first."""
-    found = Places(motion, np.full(len(places), design), np.array(places, dtype=float))
+def drivers_at(motion: Motion, places: Sequence[float]) -> list[dict[str, Quantity]]:
+    """Return what drives a motion of one design at places: the time, then the drivers that move, all if none does."""
+    found = Places(motion, np.zeros(len(places), dtype=int), np.array(places, dtype=float))
     columns = {}
     if found.time is not None:
         columns[TIME] = found.time, unit_of("", "time")
-    for name in moving_drivers(motion, design) or tuple(motion.drives):
+    for name in moving_drivers(motion, 0) or tuple(motion.drives):
         dimension = coordinate_dimension(motion.drives[name].is_angle)
         columns[name] = found.drives[name], unit_of(motion.mechanism.unit, dimension)
     return [
@@ -95,20 +95,18 @@ def moving_drivers(motion: Motion, design: int) -> tuple[str, ...]:
     return tuple(name for name, row in rows.items() if np.ptp(row) > 0)
 
 
-def ranges_of(motion: Motion, design: int, asked: Sequence[str | Measure]) -> dict[str, Range]:
-    """Return the ranges of real quantities, exact between poses; those of a single pose are its values.
+def ranges_of(motion: Motion, asked: Sequence[str | Measure]) -> dict[str, Range]:
+    """Return the ranges of real quantities of one design, exact between poses; those of a single pose are its values.
 
     Quantities that the motion does not define, such as ratios where several drivers move, are left out.
     """
     if motion.inputs.poses < 2:
-        return _at_pose(motion, design, [one if isinstance(one, str) else one.name for one in asked])
+        return _at_pose(motion, [one if isinstance(one, str) else one.name for one in asked])
     found = extremes(motion, *asked) if asked else ()
     ends = [(one, word, getattr(one, word)) for one in found for word in (LEAST, GREATEST)]
-    known = [
-        (one.name, word, one.unit, float(end.value[design]), float(end.at.place[design])) for one, word, end in ends
-    ]
+    known = [(one.name, word, one.unit, float(end.value[0]), float(end.at.place[0])) for one, word, end in ends]
     known = [row for row in known if not np.isnan(row[3])]
-    at = drivers_at(motion, design, [place for *_, place in known])
+    at = drivers_at(motion, [place for *_, place in known])
     figures = {
         (name, word): PlacedFigure(scalar_quantity(f"{name}.{word}", value, unit), where, place)
         for (name, word, unit, value, place), where in zip(known, at, strict=True)
@@ -117,25 +115,25 @@ def ranges_of(motion: Motion, design: int, asked: Sequence[str | Measure]) -> di
         one.name: Range(
             figures[one.name, LEAST],
             figures[one.name, GREATEST],
-            bool(one.is_constant[design]),
-            any(end.until[design] > end.at.place[design] + SAME_PLACE for end in (one.least, one.greatest)),
+            bool(one.is_constant[0]),
+            any(end.until[0] > end.at.place[0] + SAME_PLACE for end in (one.least, one.greatest)),
         )
         for one in found
         if (one.name, LEAST) in figures and (one.name, GREATEST) in figures
     }
 
 
-def _at_pose(motion: Motion, design: int, names: Sequence[str]) -> dict[str, Range]:
+def _at_pose(motion: Motion, names: Sequence[str]) -> dict[str, Range]:
     """Return the values at the only pose."""
     found = {}
-    (where,) = drivers_at(motion, design, [0.0])
+    (where,) = drivers_at(motion, [0.0])
     for name in names:
         try:
             whole, part = whole_and_part(motion, name)
         except InvalidInput:
             continue  # of an order that the motion was not solved to
         one = whole.part(part) if part else whole
-        value = np.broadcast_to(one.values, motion.shape).reshape(-1)[design]
+        value = np.broadcast_to(one.values, motion.shape).reshape(-1)[0]
         if np.isfinite(value):
             figure = PlacedFigure(scalar_quantity(name, float(value), one.unit), where, 0.0)
             found[name] = Range(figure, figure, True)

@@ -176,12 +176,12 @@ class AdvantageFigures:
         return self.ratio.least.number <= slack and self.ratio.greatest.number >= -slack
 
 
-def ratio_names(motion: Motion, outputs: Iterable[Output], design: int) -> dict[str, str]:
+def ratio_names(motion: Motion, outputs: Iterable[Output]) -> dict[str, str]:
     """Return the names of the velocity ratios by their owners.
 
     It is empty for a driver of constant speed: ratios then follow from rates.
     """
-    if len(moving_drivers(motion, design)) > 1 or steady_speed(motion, design) is not None:
+    if len(moving_drivers(motion, 0)) > 1 or steady_speed(motion) is not None:
         return {}
     if not any(np.any(rates[1] != 0) for rates in motion.inputs.drives.values()):
         return {}
@@ -205,31 +205,30 @@ def _turned(angle: Number) -> float:
     return max((float(np.ptp(row)) for row in rows if len(row)), default=0.0)
 
 
-def steady_speed(motion: Motion, design: int) -> float | None:
+def steady_speed(motion: Motion) -> float | None:
     """Return the constant speed of the only driver that moves, else None."""
-    moving = moving_drivers(motion, design)
+    moving = moving_drivers(motion, 0)
     if len(moving) != 1:
         return None
-    shape = motion.inputs.designs, motion.inputs.poses
-    rates = np.broadcast_to(motion.inputs.drives[moving[0]][1], shape)[design]
+    rates = np.ravel(motion.inputs.drives[moving[0]][1])
     return float(rates[0]) if rates[0] and np.all(rates == rates[0]) else None
 
 
 def advantages(
-    motion: Motion, design: int, outputs: Iterable[Output], names: Mapping[str, str], ranges: Mapping[str, Range]
+    motion: Motion, outputs: Iterable[Output], names: Mapping[str, str], ranges: Mapping[str, Range]
 ) -> tuple[AdvantageFigures, ...]:
     """Return the advantages of all outputs that move."""
-    speed = steady_speed(motion, design)
+    speed = steady_speed(motion)
     found = {owner: ranges[name] for owner, name in names.items() if name in ranges}
     if speed is not None:
         known = [one for one in _turning(motion, outputs) if one.rate in ranges]
-        found = {one.owner: _by_speed(motion, design, one, ranges[one.rate], speed) for one in known}
+        found = {one.owner: _by_speed(motion, one, ranges[one.rate], speed) for one in known}
     return tuple(AdvantageFigures(owner, ratio) for owner, ratio in found.items() if ratio.absolute.number)
 
 
-def _by_speed(motion: Motion, design: int, output: Output, rate: Range, speed: float) -> Range:
+def _by_speed(motion: Motion, output: Output, rate: Range, speed: float) -> Range:
     """Return the range of a velocity ratio from that of a rate, at a constant speed of the driver."""
-    driver = motion.drives[moving_drivers(motion, design)[0]]
+    driver = motion.drives[moving_drivers(motion, 0)[0]]
     own = output.kind == "links" or motion.pairs[output.owner].is_angle
     unit = ratio_unit(motion.mechanism.unit, coordinate_dimension(own), coordinate_dimension(driver.is_angle))
     ends = sorted((rate.least, rate.greatest), key=lambda end: end.number / speed)
