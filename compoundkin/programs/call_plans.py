@@ -294,7 +294,9 @@ class CallPlan(ShortRepr):
 
     def _place(self, number: int, names: tuple[InputNumber, ...], shape: tuple[int, ...]) -> NumberPlace:
         inputs = tuple(map(self.inputs.index, names))
-        is_copied = self._are_kept and not any(self.values[name] in inputs for name in self.moving)
+        # of several designs each reads it: one number after another, it is read in less time
+        is_copied = self._are_kept or self.extent[0] > 1
+        is_copied &= not any(self.values[name] in inputs for name in self.moving)
         if not shape:
             return NumberPlace(number, inputs, None, None, is_copied)
         if prod(shape) == shape[-1]:
