@@ -428,9 +428,11 @@ def value_text(value: float, scale: float = 0.0) -> str:
 
 def place_labels(figure: Any, labels: Sequence[PointLabel]) -> None:
     """Write the labels, each where it covers least. One that finds no free place is left out."""
-    figure.draw_without_rendering()
+    figure.get_layout_engine().execute(figure)
+    for axes in figure.axes:
+        axes.apply_aspect()
     # settled now: the labels are placed for this layout, and writing a file need not find it again
-    figure.set_layout_engine("none")
+    figure.set_layout_engine(None)
     renderer = figure.canvas.get_renderer()
     scale = figure.dpi / 72.0
     taken: dict[Any, list[Number]] = {}
