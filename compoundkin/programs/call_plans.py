@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from itertools import takewhile
 from math import copysign, prod
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -44,8 +44,6 @@ NUMBERS: Mapping[type, type] = {float: float, int: float, np.float64: float, com
 # Some arguments of a call, in the order of `Call`; parameters of an objective may follow. Rates stand between.
 VALUES, DIMENSIONS, TIME, PARAMETERS = 0, 1, 5, 6
 ZERO = np.zeros((1, 1))
-# Makes an array (1, 1) of a number.
-ArrayOf: TypeAlias = Callable[[float], Number]
 
 
 class CallForm(NamedTuple):

@@ -23,7 +23,7 @@ from compoundkin.kinematics.solving_order import Choice, SolvingOrder, run
 LONGEST = 6.0
 
 
-class Repeats(NamedTuple):
+class Repetition(NamedTuple):
     """Where a path is the same again: after so many `turns` of the driver, `length` places from `start` on.
 
     States have `gone` by whole turns then, (designs, 3 n).
@@ -55,7 +55,7 @@ class GroupPath:
     reach: Number
     side: Number
     returns: tuple[GroupPath, ...] = ()
-    repeats: Repeats | None = None
+    repeats: Repetition | None = None
 
     @cached_property
     def _last(self) -> Number:
@@ -253,7 +253,7 @@ FEW_TURNS, MOST_TURNS = 2.0, 6
 RETURNED = 1e-9
 
 
-def _repeats(curve: Followed, k: int, at: Number, march: GroupMarch, way: Number) -> Repeats | None:
+def _repeats(curve: Followed, k: int, at: Number, march: GroupMarch, way: Number) -> Repetition | None:
     """March some turns of the only driver, where its path has many; return how the group's path repeats itself, if so.
 
     All that surrounds the group must do so too: earlier groups keep their signs, or repeat themselves. Where it is back
@@ -277,8 +277,8 @@ def _repeats(curve: Followed, k: int, at: Number, march: GroupMarch, way: Number
         gone = np.where(march.lengths, 0.0, TURN * np.round(moved / TURN))
         if np.abs((moved - gone) * march.weights).max() <= RETURNED:
             if end < home:
-                return Repeats(done, end, home - end, -gone[:, 0])
-            return Repeats(done, home, end - home, gone[:, 0])
+                return Repetition(done, end, home - end, -gone[:, 0])
+            return Repetition(done, home, end - home, gone[:, 0])
     return None
 
 
