@@ -75,8 +75,8 @@ def newton_iterations(
 
     >>> from compoundkin.files import load
     >>> found = newton_iterations(load("four-bar-norton"), {"crank": np.deg2rad(40)})
-    >>> found.converged, {name: round(float(np.degrees(v)), 3) for name, v in found.values.items()}
-    (True, {'coupler': 20.298, 'rocker': 57.325})
+    >>> found.failure, {name: round(float(np.degrees(v)), 3) for name, v in found.values.items()}
+    ('', {'coupler': 20.298, 'rocker': 57.325})
     """
     equations = loop_equations(mechanism)
     structure, system = equations.structure, equations.system
