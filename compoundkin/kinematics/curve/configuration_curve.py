@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -199,46 +199,25 @@ class ConfigurationCurve(ShortRepr):
 
         None where it goes farther, begins or ends beside a change point, or more than signs tell the configuration.
         """
-        own, moving = self.path, self.path.moving
         if self.paths or self.turns or self.branches or self.solving_order.followable - self.fixed.keys():
             return None
         if len(path.places) == 1:
             return replace(self, path=path, flips={}, left={}, near_misses={})
-        if own.designs > 1 or path.designs > 1 or len(moving) != 1 or path.moving != moving:
-            return None
-        here, there = (_values_of(each, moving[0]) for each in (own, path))
-        gap, ratio = there.home - here.home, there.unit / here.unit
-        gap = float(wrapped(gap)) if own.wraps or path.wraps else gap
-        sense, (first, last) = float(np.sign(ratio)), path.ends
-
-        def placed(place: Number) -> Number:
-            return path.home + sense * (place - own.home)
-
-        low, high = sorted(map(placed, own.ends))
-        if not (
-            low - SAME <= first
-            and last <= high + SAME
-            and abs(gap / here.unit) <= SAME
-            and abs(abs(ratio) - 1.0) <= EVEN
-        ):
+        part = _PathPart.of(path, self.path)
+        if part is None:
             return None
         flips = {}
         for k, known in self.flips.items():
-            places = np.sort(placed(known[0][np.isfinite(known[0])]))
-            off = np.abs(places[:, None] - np.array([first, last, path.home]))
-            places = np.where(off[:, 0] < AT_END, first, np.where(off[:, 1] < AT_END, last, places))
-            if np.any((off > AT_END) & (off < BESIDE_END)) or np.any(off[:, 2] < BESIDE_END):
+            places = part.change_points(known[0])
+            if places is None:
                 return None
-            places = places[(places >= first) & (places <= last)]
             if len(places):
-                # beyond the whole path, which is on one side of it
-                flips[k] = np.where(places == last, np.nextafter(last, np.inf), places)[None]
-        if sum(bool(np.any((each <= first) | (each >= last))) for each in flips.values()) > 1:
+                flips[k] = places[None]
+        if sum(bool(np.any((each <= part.first) | (each >= part.last))) for each in flips.values()) > 1:
             return None
-        misses = {k: (one._replace(place=placed(one.place)) for one in each) for k, each in self.near_misses.items()}
-        missed = {k: tuple(one for one in each if first <= one.place <= last) for k, each in misses.items()}
+        misses = {k: part.near_misses(each) for k, each in self.near_misses.items()}
         left = {k: np.full(each.shape, np.inf) for k, each in flips.items()}
-        return replace(self, path=path, flips=flips, left=left, near_misses=missed)
+        return replace(self, path=path, flips=flips, left=left, near_misses=misses)
 
     def with_followed(self, groups: Sequence[int]) -> ConfigurationCurve:
         """Return the curve on which some groups with signs are followed from where they are at home."""
@@ -291,8 +270,53 @@ AT_END, BESIDE_END = 1e-9, 1e-5
 EVEN = 1e-10
 
 
+class _PathPart(NamedTuple):
+    """A path from `first` to `last` that is a part of another one of the same design, in its sense or against it."""
+
+    first: float
+    last: float
+    home: float
+    sense: float
+    other_home: float
+
+    @classmethod
+    def of(cls, path: DriverPath, other: DriverPath) -> _PathPart | None:
+        """Return a path as a part of another one; None where it goes farther, or other drivers move."""
+        moving = other.moving
+        if other.designs > 1 or path.designs > 1 or len(moving) != 1 or path.moving != moving:
+            return None
+        here, there = (_values_of(each, moving[0]) for each in (other, path))
+        gap, ratio = there.home - here.home, there.unit / here.unit
+        gap = float(wrapped(gap)) if other.wraps or path.wraps else gap
+        found = cls(*path.ends, path.home, float(np.sign(ratio)), other.home)
+        low, high = sorted(map(found.placed, other.ends))
+        is_within = low - SAME <= found.first and found.last <= high + SAME
+        is_alike = abs(gap / here.unit) <= SAME and abs(abs(ratio) - 1.0) <= EVEN
+        return found if is_within and is_alike else None
+
+    def placed(self, place: Any) -> Any:
+        """Return a place of the other path, or several, on this one."""
+        return self.home + self.sense * (place - self.other_home)
+
+    def change_points(self, known: Number) -> Number | None:
+        """Return which change points of the other path it passes; None where it begins, ends or is drawn beside one."""
+        places = np.sort(self.placed(known[np.isfinite(known)]))
+        off = np.abs(places[:, None] - np.array([self.first, self.last, self.home]))
+        places = np.where(off[:, 0] < AT_END, self.first, np.where(off[:, 1] < AT_END, self.last, places))
+        if np.any((off > AT_END) & (off < BESIDE_END)) or np.any(off[:, 2] < BESIDE_END):
+            return None
+        places = places[(places >= self.first) & (places <= self.last)]
+        # beyond the whole path, which is on one side of it
+        return np.where(places == self.last, np.nextafter(self.last, np.inf), places)
+
+    def near_misses(self, known: Sequence[NearMiss]) -> tuple[NearMiss, ...]:
+        """Return which near misses of the other path are on it."""
+        placed = (one._replace(place=self.placed(one.place)) for one in known)
+        return tuple(one for one in placed if self.first <= one.place <= self.last)
+
+
 class _DriverValues(NamedTuple):
-    """The value of the only driver that moves along a path at home, and by how much it goes in a place."""
+    """The value of the only driver that moves along a path at home, and by how much it changes from place to place."""
 
     home: float
     unit: float
