@@ -22,7 +22,7 @@ import numpy as np
 from compoundkin.base.arguments import checked
 from compoundkin.base.arrays import Number, first_entry, unwrapped
 from compoundkin.base.display import DisplaysHtml, ShortRepr, count_phrase, display_function
-from compoundkin.base.errors import InvalidInput, Problem, UnknownName, suggestion
+from compoundkin.base.errors import InvalidInput, NotAssembled, Problem, UnknownName, suggestion
 from compoundkin.base.linear import one_thread
 from compoundkin.dimensional.candidates import COUPLER, POINT, Linkage, of_dyads
 from compoundkin.dimensional.dyad_equations import PR, RR, Dyad
@@ -173,7 +173,8 @@ def cognates(mechanism: Mechanism | Motion, point: str) -> Cognates:
     """Return the linkages that draw the same curve of a coupler point, each solved over the motion by itself.
 
     The link with the point is pinned to two others, of which each is pinned to the frame, or one slides on it. Raises
-    InvalidInput for any other mechanism, and where the point is a joint; UnknownName for a point that is none.
+    InvalidInput for any other mechanism, and where the point is a joint; UnknownName for a point that is none;
+    NotAssembled where no pose is assembled.
 
     >>> from compoundkin.model.elements import drive, link
     >>> four_bar = Mechanism("m", link("frame", A=0, D=5), link("crank", A=0, B=2), link("rocker", D=0, C=4),
@@ -212,6 +213,8 @@ def _given(motion: Motion, point: str) -> Cognate:
         how = "it lies on one link, which is pinned to two links that are pinned to the frame, or slide on it"
         raise InvalidInput(Problem(point, what, how))
     good = np.broadcast_to(motion.assembled, motion.shape)
+    if not good.any():
+        raise NotAssembled(Problem("mechanism", "its motion has no assembled pose", "change a length, or the values"))
     z = np.broadcast_to(motion.points[point].position, motion.shape)[good]
     u = np.exp(1j * np.broadcast_to(motion.links[bodies[0]].angle, motion.shape)[good])
     one, other = sorted(dyads[0], key=lambda dyad: dyad.kind == PR)

@@ -101,3 +101,5 @@ def test_what_has_no_cognates():
         ck.cognates(ck.load("six-bar"), "G")
     with pytest.raises(ck.errors.InvalidInput, match="there is no cognate 3"):
         ck.cognates(four_bar(*CRANK_ROCKER), "P").geared_five_bar(3)
+    with pytest.warns(ck.errors.UnassembledPoses), pytest.raises(ck.errors.NotAssembled, match="no assembled pose"):
+        ck.cognates(four_bar(1.0, 2.0, 2.0, 12.0, 1j), "P")

@@ -96,6 +96,22 @@ def test_a_follower_that_leaves_its_profile_is_not_assembled():
     np.testing.assert_allclose(found["P.position"], motion.points["P"].position, rtol=0.0, atol=1e-12)
 
 
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("bow", [-0.5, 0.5])
+def test_a_turning_face_has_no_contact_in_a_hollow(bow):
+    x = np.linspace(-1.0, 1.0, 9)
+    arch = ck.profiles.profile(x + 1j * (2.0 + bow * x**2), closed=False)
+    mechanism = ck.Mechanism(
+        "arch", ck.link("frame", A=0, H=4 + 0.5j), ck.link("cam", A=0), ck.link("follower", H=0, P=-2.0),
+        ck.face("follower", on="cam", at="P", profile=arch), ck.drive("cam"),
+    )  # fmt: skip
+    course = np.linspace(-0.4, 0.4, 9)
+    motion = ck.solve(mechanism, course)
+    assert motion.assembled.all() == (bow > 0.0)
+    assert motion.assembled.any() == (bow > 0.0)
+    np.testing.assert_array_equal(ck.compile(mechanism, "P", backend="numpy")(course).assembled, motion.assembled)
+
+
 def test_a_dyad_behind_a_follower_keeps_the_side_that_solve_has():
     oval = ck.profiles.formula(lambda s: 2.0 * np.cos(s) + 1j * 1.6 * np.sin(s), 0.0, TURN)
     frame = ck.link("frame", A=0, D=4 + 3j)

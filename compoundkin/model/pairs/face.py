@@ -200,6 +200,9 @@ class Face(ProfileContact, FrictionContact):
         normal = -1j * self.curve.outer_side * first / np.abs(first)
         touched = self.curve.at(self.curve.support(normal)).c[0]
         on_hull = np.abs(touched - place) < NEAR * self.curve.size
+        if not on_hull.any():
+            # a face rests on the ends alone of what is hollow all along
+            on_hull[[0, -1]] = True
         return ProfileSamples(s[on_hull], place[on_hull], normal[on_hull])
 
     def osculation(self, ends: Ends, poses: Poses) -> Osculation:
