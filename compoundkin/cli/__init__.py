@@ -6,6 +6,7 @@ Results go to stdout, everything else to stderr. A verb imports NumPy and the ro
 
 from __future__ import annotations
 
+import atexit
 import gc
 import re
 import sys
@@ -220,10 +221,12 @@ def cli() -> None:
 
 
 # Objects that Python makes before it looks for cycles among them: a command makes many, few cycles, and ends soon.
-COLLECTED_AFTER = 50_000
+COLLECTED_AFTER = 200_000
 
 
 def main() -> None:
     """Run the command `compoundkin`."""
     gc.set_threshold(COLLECTED_AFTER)
+    # what is left goes with the process: at its end Python would look through all of it once more
+    atexit.register(gc.freeze)
     cli.main(prog_name="compoundkin")
