@@ -92,13 +92,18 @@ class Inverse:
     def __init__(self, rows: Sequence[Row], size: int) -> None:
         self.size = size
         if size == 3:
+            # set before anybody asks for it
             self._entries, self.determinant = _cramer([[row.get(j, 0.0) for j in range(3)] for row in rows])
         else:
-            matrix = stacked(rows, size)
-            self.determinant = np.linalg.slogdet(matrix)[0]
-            self._whole = inverted(matrix)
+            self._matrix = stacked(rows, size)
+            self._whole = inverted(self._matrix)
             few = size if size <= ONE_BY_ONE else 0
             self._entries = [[self._whole[..., i, j] for j in range(few)] for i in range(few)]
+
+    @cached_property
+    def determinant(self) -> Number:
+        """The determinant; of matrices of more than three rows its sign."""
+        return np.linalg.slogdet(self._matrix)[0]
 
     @property
     def largest(self) -> Number:

@@ -430,7 +430,7 @@ def _interpolated_inputs(one: Inputs, two: Inputs, i: Number, at: Number, count:
 
     def mixed(a: Number, b: Number) -> Number:
         # equal ends stay: the open end of a guide is infinite
-        return some(a) if np.all(np.equal(a, b)) else some(a) + (some(b) - some(a)) * at
+        return some(a) if a is b or np.all(np.equal(a, b)) else some(a) + (some(b) - some(a)) * at
 
     def side(a: End, b: End) -> End:
         return End(*(None if v is None else mixed(v, w) for v, w in zip(a, b, strict=True)))

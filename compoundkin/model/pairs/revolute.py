@@ -76,7 +76,7 @@ class Revolute(FrictionPin, Drivable):
 
     def jacobian(self, ends: Ends, poses: Poses) -> Number:
         """Return the rows of gap x, gap y and angle."""
-        arm = [(pose.u * end.point).c[0] for pose, end in zip(poses, ends, strict=True)]
+        arm = [pose.u.c[0] * as_series(end.point).c[0] for pose, end in zip(poses, ends, strict=True)]
         return jacobian_of_rows(
             (-1.0, 0.0, arm[0].imag, 1.0, 0.0, -arm[1].imag),
             (0.0, -1.0, -arm[0].real, 0.0, 1.0, arm[1].real),

@@ -524,20 +524,18 @@ class LabelCrowd:
 
     def _that_may_meet(self, moved: Sequence[Number]) -> list[Number]:
         """Return for each label the indices of the others that it may ever be on: of all else nothing is counted."""
-        nothing: Number = np.zeros((len(self._middles), 0))
-        least_x, most_x, least_y, most_y = (
-            np.column_stack([nothing, *(extreme(part(one), axis=1) for one in moved)])
-            for part in (np.real, np.imag) for extreme in (np.min, np.max)
-        )  # fmt: skip
-        found = []
-        for k, half in enumerate(self._half):
-            reach = half + self._half + (ROOM + TOUCHING) * (1 + 1j)
-            wide = (least_x - most_x[:, k, None] < reach.real) & (least_x[:, k, None] - most_x < reach.real)
-            high = (least_y - most_y[:, k, None] < reach.imag) & (least_y[:, k, None] - most_y < reach.imag)
-            meets = (wide & high).any(axis=0)
-            meets[k] = False
-            found.append(np.flatnonzero(meets))
-        return found
+        if not moved:
+            return []
+        starts = np.cumsum([0, *(one.shape[1] for one in moved[:-1])])
+        whole, reach = np.concatenate(moved, axis=1), self._half[:, None] + self._half + (ROOM + TOUCHING) * (1 + 1j)
+        meets: Number = np.ones((len(whole), len(moved), len(moved)), dtype=bool)
+        for part in (np.real, np.imag):
+            least, most = (extreme.reduceat(part(whole), starts, axis=1) for extreme in (np.minimum, np.maximum))
+            apart = least[:, None] - most[..., None]
+            meets &= (apart < part(reach)) & (apart.swapaxes(1, 2) < part(reach))
+        together = meets.any(axis=0)
+        np.fill_diagonal(together, False)
+        return [np.flatnonzero(row) for row in together]
 
     def is_new_for(self, k: int) -> bool:
         """Return whether any that a label may be on was put elsewhere since it was put."""
