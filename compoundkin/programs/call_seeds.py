@@ -21,7 +21,7 @@ from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram, numbers
 from compoundkin.programs.drawn_approach import ClearApproaches, DrawnApproach, DriverRoute
 from compoundkin.programs.follower_contacts import FollowerContacts
 from compoundkin.programs.graph.operation_graph import DIMENSION, DRIVE, HOLDS, STEP, InputNumber, start_of
-from compoundkin.programs.limit_screening import only_design, resting_numbers, vary_along_motion
+from compoundkin.programs.limit_screening import clear_on_approach, resting_numbers
 from compoundkin.programs.recorded_path import RecordedPath
 from compoundkin.programs.recording.recorded_limits import RecordedLimits
 from compoundkin.programs.recording.recorded_march import side_of
@@ -93,23 +93,13 @@ class CallSeeds:
 
     def _is_approached(self, contacts: FollowerContacts, numbers: CallNumbers) -> Number:
         """Tell which designs are surely clear of limits on the approach to a motion: groups keep their signs there."""
-        values = numbers.driver_values
-        if not contacts.watches or self.approach.is_passed(values):
+        if not contacts.watches or self.approach.is_passed(numbers.driver_values):
             return np.True_
-        way, design = self.approach.way(values), only_design(numbers)
-        if way is not None and self._clear.has(design, way):
-            return np.True_
-        approach = self.approach.values(values) if way is None else way.values
-        if approach is None or vary_along_motion(numbers):
-            return np.bool_(approach is None)
 
         def margins(drives: Mapping[str, Number]) -> Number:
             return contacts.margins(resting_numbers(numbers, drives))
 
-        is_clear = np.all(margins(approach) >= NEAR, axis=1)
-        if way is not None and is_clear.all():
-            self._clear.explore(design, way, numbers.extent[1] == 1, margins)
-        return is_clear
+        return clear_on_approach(self.approach, self._clear, numbers, margins)
 
     def _starts(self, path: RecordedPath, numbers: CallNumbers) -> dict[InputNumber, Number]:
         """Return the seeds at first poses: continued from how the path is drawn, or solved for designs too far away."""

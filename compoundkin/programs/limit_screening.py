@@ -134,20 +134,10 @@ class LimitScreening(ShortRepr):
         longest = self._longest_step(values, steps)
         if longest > 1.0 and not margin >= safe_margin(longest):
             return False
-        return self.approach.is_passed(values) or not self._squares or self._is_approached(values, numbers())
-
-    def _is_approached(self, values: Mapping[str, Number], numbers: CallNumbers) -> bool:
-        """Tell whether designs are surely clear of limits on the approach to a motion."""
-        way, design = self.approach.way(values), only_design(numbers)
-        if way is not None and self._clear.has(design, way):
+        if self.approach.is_passed(values) or not self._squares:
             return True
-        approach = self.approach.values(values) if way is None else way.values
-        if approach is None or vary_along_motion(numbers):
-            return approach is None
-        is_clear = bool(np.all(self._margins_on(numbers, approach) >= NEAR))
-        if way is not None:
-            self._clear.explore(design, way, numbers.extent[1] == 1, partial(self._margins_on, numbers))
-        return is_clear
+        own = numbers()
+        return bool(np.all(clear_on_approach(self.approach, self._clear, own, partial(self._margins_on, own))))
 
     @cached_property
     def _clear(self) -> ClearApproaches:
@@ -158,8 +148,8 @@ class LimitScreening(ShortRepr):
         resting = resting_numbers(numbers, approach)
         return self._program(self._poses, resting).run(resting)[MARGIN]
 
-    def _safe_margin(self, values: Mapping[str, Number], steps: Mapping[str, Number] | None = None) -> float:
-        return float(safe_margin(max(1.0, self._longest_step(values, steps))))
+    def _safe_margin(self, values: Mapping[str, Number]) -> float:
+        return float(safe_margin(max(1.0, self._longest_step(values))))
 
     def _longest_step(self, values: Mapping[str, Number], steps: Mapping[str, Number] | None = None) -> float:
         """Return the longest step of a driver, in its spacing."""
@@ -338,6 +328,30 @@ def may_touch_zero(y0: Number, slope0: Number, y1: Number, slope1: Number) -> Nu
         least = y0 + t * (slope0 + t * (0.5 * b + t * a / 3.0))
         touches[touches] = least < TOUCHING_PART * lesser
     return touches
+
+
+def clear_on_approach(
+    approach: DrawnApproach,
+    known: ClearApproaches,
+    numbers: CallNumbers,
+    margins: Callable[[Mapping[str, Number]], Number],
+) -> Number:
+    """Tell which designs are surely clear of limits on the approach to a motion, (designs,) or for all of them.
+
+    `margins` gives the least margins of groups at values of the drivers, (1 or designs, values); `known` keeps how far
+    a design is clear.
+    """
+    values = numbers.driver_values
+    way, design = approach.way(values), only_design(numbers)
+    if way is not None and known.has(design, way):
+        return np.True_
+    approached = approach.values(values) if way is None else way.values
+    if approached is None or vary_along_motion(numbers):
+        return np.bool_(approached is None)
+    is_clear = np.all(margins(approached) >= NEAR, axis=1)
+    if way is not None:
+        known.explore(design, way, numbers.extent[1] == 1, margins)
+    return is_clear
 
 
 def only_design(numbers: CallNumbers) -> tuple[float, ...] | None:
