@@ -20,7 +20,7 @@ from compoundkin.base.version import VERSION
 from compoundkin.kinematics.configuration import label
 from compoundkin.kinematics.quantities import ASSEMBLED
 from compoundkin.model.attributes import component_names, unit_suffix
-from compoundkin.programs.backends.runner import TURNS
+from compoundkin.programs.backends.runner import THREAD_TURNS
 from compoundkin.studies.responses.assembled_range import AssembledRange, assembled_range, failure, is_misfit
 from compoundkin.studies.responses.designs import Designs, StudiedPath, designs_at_once
 from compoundkin.studies.responses.response import Response
@@ -104,7 +104,7 @@ class StudyProgram(ShortRepr):
 
     def _computed(self, rows: range) -> dict[str, Number]:
         """Compute a block."""
-        with suppress_pose_warnings(), TURNS.taken():
+        with suppress_pose_warnings(), THREAD_TURNS.taken():
             dimensions = self.sample.designs(self.variations, rows)
             designs = self.path.designs(dimensions)
             found = {ROW: np.arange(rows.start, rows.stop)}

@@ -127,8 +127,8 @@ class ThreadTurns:
             self._lock.release()
 
 
-TURNS = ThreadTurns()
+THREAD_TURNS = ThreadTurns()
 
 if hasattr(os, "register_at_fork"):
     # another thread of the parent may have had the turn
-    os.register_at_fork(after_in_child=TURNS.renew)
+    os.register_at_fork(after_in_child=THREAD_TURNS.renew)

@@ -37,7 +37,7 @@ from compoundkin.base.extremes import (
     Windows,
 )
 from compoundkin.programs.backends import runner_of
-from compoundkin.programs.backends.runner import TURNS
+from compoundkin.programs.backends.runner import THREAD_TURNS
 from compoundkin.programs.call_numbers import CallNumbers, ReadyProgram
 from compoundkin.programs.graph.flat_program import BY_BOTH, BY_DESIGN, BY_POSE, FIXED_NUMBER, flat_program
 from compoundkin.programs.graph.operation_graph import PARAMETER, TOTAL, InputNumber, OperationGraph
@@ -175,7 +175,7 @@ def _computed(program: ReadyProgram[int], inputs: Mapping[str, Number], poses: i
     given = {_input(name): each if each.ndim > 1 else each[:, None] for name, each in inputs.items()}
     shape = max(len(each) for each in given.values()), poses
     numbers = CallNumbers(given, shape, frozenset())
-    with TURNS.left():
+    with THREAD_TURNS.left():
         found = program.run(numbers)
     return [np.ravel(each) for each in found.values()]
 

@@ -14,7 +14,7 @@ import numpy as np
 from compoundkin.base.arrays import Number
 from compoundkin.base.display import ShortRepr
 from compoundkin.base.extremes import MOST_ADDED, POLE, ROUNDING, Offers, SoughtPeaks, Windows, best_of, peaks
-from compoundkin.programs.backends.runner import TURNS
+from compoundkin.programs.backends.runner import THREAD_TURNS
 from compoundkin.studies.responses.assembled_range import assembled_range
 from compoundkin.studies.responses.course_peaks import CoursePrograms, SampledBest, Vertices, course_programs
 from compoundkin.studies.responses.designs import Designs, refined_samples, refinement_parts
@@ -55,7 +55,7 @@ class SampledCourse(NamedTuple):
     def of(cls, values: Number, parts: int) -> SampledCourse:
         """Return a course with its extremes; their places are found in less time than themselves."""
         begin, flat = np.arange(len(values)) * values.shape[1], np.ravel(values)
-        with TURNS.left():
+        with THREAD_TURNS.left():
             high_at, low_at = values.argmax(axis=1), values.argmin(axis=1)
         return cls(parts, values, flat.take(begin + high_at), flat.take(begin + low_at), high_at, low_at)
 

@@ -18,7 +18,7 @@ from compoundkin.kinematics.extremes.motion_between import inputs_between, inter
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.solution import solve
 from compoundkin.model.attributes import RADIANS, RATES, TIME
-from compoundkin.programs.backends.runner import TURNS
+from compoundkin.programs.backends.runner import THREAD_TURNS
 from compoundkin.programs.call_numbers import Call, CallNumbers
 from compoundkin.programs.compiled_path import CompiledPath
 from compoundkin.programs.derivatives.path_objective import PathObjective
@@ -110,7 +110,7 @@ class Designs(ShortRepr):
 
     def _outputs(self) -> PathValues:
         values, dimensions, more = self.call
-        with TURNS.left():
+        with THREAD_TURNS.left():
             return self.path.compiled(values, dimensions, **more)
 
     @property
@@ -196,7 +196,7 @@ class Designs(ShortRepr):
         # a design that stays in its mode needs no look at limits between its poses
         programs = self.path.compiled.programs
         program = programs.program(there)
-        with TURNS.left():
+        with THREAD_TURNS.left():
             found = program.run(there)[name]
         found = np.broadcast_to(found, there.shape)
         if not is_angle or _are_within_half_a_turn(

@@ -14,7 +14,7 @@ from compoundkin.base.errors import CompoundkinError, InvalidInput, Problem
 from compoundkin.kinematics.motion import Motion
 from compoundkin.kinematics.quantities import quantity
 from compoundkin.model.attributes import Dimension
-from compoundkin.programs.backends.runner import TURNS
+from compoundkin.programs.backends.runner import THREAD_TURNS
 from compoundkin.programs.derivatives.path_objective import ComputedSum
 from compoundkin.studies.responses.designs import Designs
 
@@ -91,7 +91,7 @@ class SummedResponse(Response):
 
     def _computed(self, designs: Designs, is_sloped: bool) -> ComputedSum:
         objective = designs.path.objective(self.function)
-        with TURNS.left():
+        with THREAD_TURNS.left():
             found = objective.computed(designs.arguments, self.given, is_sloped)
         designs.note_limits(found.is_clear)
         return found
