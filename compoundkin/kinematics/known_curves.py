@@ -67,14 +67,14 @@ def _solved_along(known: ConfigurationCurve, given: Inputs, order: int) -> Descr
         return None
     structure, followed = known.solving_order.structure, FollowedPoses(curve, given, poses)
     with diagnosing(structure):
-        told = without_imprecise_rates(*with_expanded(solve_blocks(followed, order), followed, order))
+        found = without_imprecise_rates(*with_expanded(solve_blocks(followed, order), followed, order))
     if structure.relaxation:
         try:
-            check_redundant(told.motion)
+            check_redundant(found.motion)
         except NotAssembled:
             # other modes are tried then
             return None
-    return told
+    return found
 
 
 def _wraps(order: SolvingOrder) -> bool:

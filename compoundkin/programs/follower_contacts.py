@@ -100,6 +100,18 @@ def _coefficient(known: Sequence[Number] | Number, k: int, away: Number) -> Numb
     return found
 
 
+class StretchEdges(NamedTuple):
+    """The edges between stretches of a curve, which at a break has the derivatives of one side.
+
+    `places` is where each edge is, `are_breaks` which are breaks. Stretches after the first one begin at `starts`: just
+    behind an edge that has the derivatives of the stretch before it.
+    """
+
+    places: Number
+    are_breaks: Number
+    starts: Number
+
+
 class FollowerPath(NamedTuple):
     """The path of a follower past its profile at some poses, as `Approach` has it.
 
@@ -169,7 +181,7 @@ class SearchedProfile(ShortRepr):
 
     @cached_property
     def _middle(self) -> complex:
-        """The midst of its samples: what is far from the origin has few digits."""
+        """The mean of its samples: what is far from the origin has few digits."""
         return complex(np.mean(self.pair.samples.places))
 
     @cached_property
@@ -224,8 +236,8 @@ class SearchedProfile(ShortRepr):
         if not curve.closed:
             sure &= (parameter > edges[0]) & (parameter < edges[-1])
         coefficients = np.array(found[4:]).reshape(2, self.orders + 1, -1)
-        if np.any(asked := self._may_touch_elsewhere(path, start) & sure):
-            sure = sure & ~(asked & self._touches_elsewhere(path, coordinate, coefficients[:, 0]))
+        if np.any(doubtful := self._may_touch_elsewhere(path, start) & sure):
+            sure = sure & ~(doubtful & self._touches_elsewhere(path, coordinate, coefficients[:, 0]))
         return coordinate, curve.wrapped(parameter), coefficients, sure
 
     def _placed(self, parameter: Number) -> tuple[Number, Number, Number]:
@@ -236,16 +248,12 @@ class SearchedProfile(ShortRepr):
         edges, parameter = self.polynomials.edges, self.pair.curve.wrapped(parameter)
         nearest = np.searchsorted(self._rows[-1], parameter)
         away, near = np.abs(parameter - edges[nearest]), AT_EDGE * (edges[-1] - edges[0])
-        parameter = np.where(away < near, self._belongs[0][nearest], parameter)
-        is_beside = self._belongs[1][nearest] & (away >= 0.5 * near) & (away < BESIDE * near)
-        return parameter, np.searchsorted(self._belongs[2], parameter, side="right"), is_beside
+        parameter = np.where(away < near, self._edges.places[nearest], parameter)
+        is_beside = self._edges.are_breaks[nearest] & (away >= 0.5 * near) & (away < BESIDE * near)
+        return parameter, np.searchsorted(self._edges.starts, parameter, side="right"), is_beside
 
     @cached_property
-    def _belongs(self) -> tuple[Number, Number, Number]:
-        """Where a place at an edge is; which edges are breaks; and the inner edges, next to those that end a stretch.
-
-        At a break a curve has the derivatives of one side.
-        """
+    def _edges(self) -> StretchEdges:
         (edges, coefficients, _), curve = self.polynomials, self.pair.curve
         places, are_breaks = edges.copy(), np.isin(edges, curve.breaks)
         if curve.closed:
@@ -254,15 +262,15 @@ class SearchedProfile(ShortRepr):
         at, half = places[:-1], 0.5 * np.diff(edges)
         order = range(len(EXACT))
         own = np.array(curve.expansion(at, len(EXACT) - 1))
-        starts, ends = (np.array([_coefficient(coefficients, k, half * sign) for k in order]) for sign in (-1.0, 1.0))
+        first, last = (np.array([_coefficient(coefficients, k, half * sign) for k in order]) for sign in (-1.0, 1.0))
         scale = half ** np.array(order)[:, None]
-        off_start = np.max(np.abs(own - starts) * scale, axis=0)
-        off_end = np.max(np.abs(own - np.roll(ends, 1, axis=1)) * scale, axis=0)
+        off_start = np.max(np.abs(own - first) * scale, axis=0)
+        off_end = np.max(np.abs(own - np.roll(last, 1, axis=1)) * scale, axis=0)
         is_end = are_breaks[:-1] & (off_end < off_start)
-        inner = np.where(is_end, np.nextafter(edges[:-1], np.inf), edges[:-1])[1:]
+        starts = np.where(is_end, np.nextafter(edges[:-1], np.inf), edges[:-1])[1:]
         if is_end[0] and curve.closed:
             places[[0, -1]] = edges[-1]
-        return places, are_breaks, inner
+        return StretchEdges(places, are_breaks, starts)
 
     def _crossed(self, path: FollowerPath) -> ContactStart:
         """Return where a path crosses the sampled profile, or its parallel, as `extreme_contacts` finds it."""
