@@ -217,24 +217,16 @@ def followed_path(
 
     `ways` are what surrounds it on the way ahead and back. A path of many turns is followed until it repeats itself.
     """
-    path = curve.path
-    first, last = path.ends
-    reaches = [each.reach for n, each in curve.paths.items() if n < k and not each.returns]
-    low = max((float(np.nanmin(each[:, 0], initial=np.inf)) for each in reaches), default=-np.inf)
-    high = min((float(np.nanmax(each[:, 1], initial=-np.inf)) for each in reaches), default=np.inf)
-    stops = path.samples
-    if low > first or high < last:
-        low, high = max(low, first), min(high, last)
-        stops = np.concatenate([[low], stops[(stops > low) & (stops < high)], [high]]) if low < high else at[:1]
+    stops, home, (first, last) = _stops(curve, k, at), curve.path.home, curve.path.ends
     way_on, way_back = ways or both_ways(curve)
-    is_ahead = bool(last - path.home >= path.home - first)
+    is_ahead = bool(last - home >= home - first)
     on, toward, way = (way_on, way_back, stops) if is_ahead else (way_back, way_on, stops[::-1])
     longer, other = _march(on, toward, k, state), _march(toward, on, k, state)
     repeats = _repeats(curve, k, at, longer, way)
     if repeats is not None:
         reach = np.tile([first - 4.0 * CLOSE, last + 4.0 * CLOSE], (len(at), 1))
         return replace(_joined(reach, longer.first_side, longer.nodes), repeats=repeats)
-    # what was marched meanwhile is gone on with, or ended; where some designs did and some not, all begin anew
+    # a march that found no repetition goes on where it is; where it ended for some designs only, all begin anew
     if longer.nodes and longer.alive.any() and not longer.alive.all():
         longer = _march(on, toward, k, state)
     if not longer.nodes or longer.alive.all():
@@ -247,7 +239,19 @@ def followed_path(
     return _joined(reach, ahead.first_side, [*back.nodes[::-1], *ahead.nodes])
 
 
-# A path of more turns than this is looked at whether it repeats itself, after so many at most.
+def _stops(curve: Followed, k: int, at: Number) -> Number:
+    """Return the samples of the path as far as groups before one reach; where they reach nothing, the first place."""
+    stops, (first, last) = curve.path.samples, curve.path.ends
+    reaches = [each.reach for n, each in curve.paths.items() if n < k and not each.returns]
+    low = max((float(np.nanmin(each[:, 0], initial=np.inf)) for each in reaches), default=-np.inf)
+    high = min((float(np.nanmax(each[:, 1], initial=-np.inf)) for each in reaches), default=np.inf)
+    if low <= first and high >= last:
+        return stops
+    low, high = max(low, first), min(high, last)
+    return np.concatenate([[low], stops[(stops > low) & (stops < high)], [high]]) if low < high else at[:1]
+
+
+# Whether a path repeats itself is tried where it has more turns than this, over so many at most.
 FEW_TURNS, MOST_TURNS = 2.0, 6
 # States nearer to each other than this (of the size, or radians) are one: rounding of a march of some turns.
 RETURNED = 1e-9
@@ -257,8 +261,8 @@ def _repeats(curve: Followed, k: int, at: Number, march: GroupMarch, way: Number
     """March some turns of the only driver, where its path has many; return how the group's path repeats itself, if so.
 
     All that surrounds the group must do so too: earlier groups keep their signs, or repeat themselves. Where it is back
-    at its first state, which is no singular one, it can but go the same way again, and has come by it. The march stays
-    where it has come to; its `way` are all stops in its sense.
+    at its first state, and that is not singular, it goes the same way again, and has come by the same. The march stays
+    where it is then; `way` has all stops in its sense.
     """
     path, before = curve.path, [each.repeats for n, each in curve.paths.items() if n < k]
     (first, last), home, far = path.ends, path.home, float(abs(way[-1] - path.home))
