@@ -16,6 +16,7 @@ import pytest
 
 import compoundkin as ck
 from compoundkin.base.errors import InvalidInput, LikelySlip
+from compoundkin.programs.backends import runner
 from compoundkin.programs.backends.runner import ThreadTurns
 from compoundkin.studies import load_study
 from compoundkin.studies.responses import studied_path
@@ -66,18 +67,21 @@ def test_a_row_is_what_solving_its_mechanism_finds(result: ck.results.StudyResul
     assert result["G.position"].shape == (8192, 6)
 
 
-def test_threads_take_turns_and_wait_for_nobody_forever() -> None:
+def test_threads_take_turns_and_wait_for_nobody_forever(monkeypatch: pytest.MonkeyPatch) -> None:
     turns, reached = ThreadTurns(), Event()
 
     def other() -> None:
         with turns.taken():
             reached.set()
 
+    monkeypatch.setattr(runner, "LONGEST_WAIT", 60.0)
     with ThreadPoolExecutor(1) as threads, turns.taken(), turns.taken():
+        waiting = threads.submit(other)
+        assert not reached.wait(0.05)
         with turns.left():
-            threads.submit(other).result(timeout=10.0)
-            assert reached.is_set()
+            waiting.result(timeout=10.0)
         # another that gets no turn goes on without
+        monkeypatch.setattr(runner, "LONGEST_WAIT", 0.05)
         threads.submit(other).result(timeout=10.0)
 
 

@@ -192,7 +192,12 @@ def coarse(item: Any) -> Any:
     return replace(item, values=values[..., :: max(1, values.shape[-1] // 6)])
 
 
-LEFT_OUT = [(kind.code, name) for kind in KINDS.values() for name in answers(kind)][:: 2 if EVERYTHING else 4]
+# Each answer is left out by every second or sixth of its kinds, begun with another kind for each answer.
+STRIDE = 2 if EVERYTHING else 6
+OF_KINDS = [(name, kind.code) for kind in KINDS.values() for name in answers(kind)]
+BY_NAME = {name: [code for other, code in OF_KINDS if other == name] for name, _ in sorted(OF_KINDS)}
+LEFT_OUT = [(code, name) for number, (name, codes) in enumerate(BY_NAME.items())
+            for code in codes[number % min(STRIDE, len(codes)) :: STRIDE]]  # fmt: skip
 REPORTED = dict(reversed(LEFT_OUT))
 
 
