@@ -420,3 +420,15 @@ def test_a_motion_of_many_turns_is_followed_until_it_repeats_itself(monkeypatch)
         np.testing.assert_allclose(motion.links[name].angle, marched.links[name].angle, rtol=0.0, atol=1e-12)
         own, other = (each.links[name].at(0.0).position for each in (motion, marched))
         np.testing.assert_allclose(own, other, rtol=0.0, atol=1e-12 * motion.size)
+
+
+def test_a_zigzag_of_measured_drivers_is_followed():
+    mechanism = ck.load("3-rrr")
+    home = {name: float(np.ravel(values[0])[0]) for name, values in ck.solve(mechanism).inputs.drives.items()}
+    noise = np.random.default_rng(0).normal(scale=1e-3, size=(3, 300))
+    smooth = {name: start + 0.3 * np.linspace(-0.3, 0.7, 300) for name, start in home.items()}
+    motion = ck.solve(mechanism, {name: values + noise[k] for k, (name, values) in enumerate(smooth.items())})
+    assert motion.assembled.all()
+    # it stays beside the motion without noise
+    away = np.abs(motion.points["P"].position - ck.solve(mechanism, smooth).points["P"].position)
+    assert 1e-4 * motion.size < away.max() < 1e-2 * motion.size

@@ -401,8 +401,9 @@ class GroupMarch:
         weights = self._weights(i)
         most = np.minimum(np.minimum(longest, _strides(weights, rates)), self.longest)
         within = np.searchsorted(self.stops, here + most, side="right") - self.goal[i]
-        self.goal[i] = np.minimum(self.goal[i] + np.maximum(within - 1, 0), len(self.stops) - 1)
-        stop = self.stops[self.goal[i]]
+        # a step that is refused leaves the goal where it was: a knot between must not be stepped over
+        goal = np.minimum(self.goal[i] + np.maximum(within - 1, 0), len(self.stops) - 1)
+        stop = self.stops[goal]
         there = np.where(stop - here <= most, stop, here + most if len(self.here) > 1 else _round(here, most))
         length, place = there - here, self.sense * there
         new, new_rates, new_side, good = self._step(i, weights, rates, self.sense * length, place)
@@ -413,7 +414,7 @@ class GroupMarch:
             self._take(
                 i[turns], place[turns], new[turns], *self._rates(new[turns], self.onward(i[turns], place[turns]))
             )
-        self.goal[i] += good & (place == self.sense * stop)
+        self.goal[i] = np.where(good & (place == self.sense * stop), goal + 1, self.goal[i])
         arrived = self.goal[i] == len(self.stops)
         lost = (self.spread[i] > FARTHEST) | (self.trials[i] > MOST_TRIALS)
         # near a limit steps vanish in rounding, each of them good
