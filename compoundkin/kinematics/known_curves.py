@@ -1,7 +1,7 @@
 """Configuration curves of designs that were solved: later motions of a design pass the change points that are known.
 
-Who asks for one motion of a design after another passes the same change points each time, and to find them takes most
-of what solving it takes.
+One motion of a design after another passes the same change points each time, and finding them takes most of the time
+of solving it.
 """
 
 from __future__ import annotations

@@ -178,6 +178,7 @@ class PathPrograms(ShortRepr):
                     given = self._arrays_of(out, program.vectors, plan.shape)
                     read.keep_apart(given.values())
                 arrays, count = program.run(read, threads, given), len(self.names)
+                # the least margin, the longest steps, and last the copies of what results keep
                 rest = arrays[count:]
                 del arrays[count:]
                 for k in reversed(plan.held.values()):

@@ -211,7 +211,7 @@ def _checked_workers(on: Any) -> Workers:
         raise InvalidInput(Problem("on", f"{short_repr(on)} computes nothing", remedy))
     if getattr(on, "asynchronous", False):
         raise InvalidInput(Problem("on", "the client is asynchronous", "distributed.Client(..., asynchronous=False)"))
-    # to carry a piece takes the cluster some ten milliseconds: those who are there take large ones
+    # a cluster takes some ten milliseconds to carry a piece: the workers that are there get large ones
     return Workers(made(pure=False), lambda: sum(counts().values()) or UNKNOWN_WORKERS, UNKNOWN_WORKERS)
 
 

@@ -66,9 +66,9 @@ def _rounded(motion: Motion, k: int, step: Number, parts: dict[str, Number]) -> 
 
 
 def _rounded_time(motion: Motion) -> Number:
-    """Return by how much too early or late a neighbour may be, since the values of drivers are rounded, too.
+    """Return by how much a neighbour may be too early or too late, since the values of drivers are rounded too.
 
-    After many turns this is what links that are much faster than their drivers show.
+    After many turns it shows in links that are much faster than their drivers.
     """
     late: Number = np.zeros(motion.failed.shape)
     for value, *rates in motion.inputs.drives.values():

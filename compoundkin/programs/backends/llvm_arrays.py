@@ -308,7 +308,7 @@ class LaneArrays:
         found = self._at(array, self._address(array, pose))
         if text.lanes == 1 or self.axis != BY_POSE:
             return found
-        # lanes of the first poses, put on by one
+        # the lanes of the first poses, moved on by one
         order = _order((0, *range(text.lanes - 1)))
         late = text.put(f"shufflevector {text.real} {now}, {text.real} poison, {order}")
         is_first = text.put("icmp eq i64 %p, 0")

@@ -1,6 +1,6 @@
 """The interface of back ends: a flat program becomes a runner, which computes arrays from arrays, in kept threads.
 
-Threads that run programs by turns with operations of NumPy take turns at these.
+Threads that alternate between programs and operations of NumPy take turns at the latter.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def run_in_threads(work: Callable[..., Any], parts: Iterable[tuple[Any, ...]]) -
             each.exception()
 
 
-# Who waits longer goes on: nothing but time depends on whose turn it is.
+# Seconds; a thread that waits longer goes on without its turn: nothing but time depends on whose it is.
 LONGEST_WAIT = 0.05
 
 

@@ -270,7 +270,7 @@ class ObjectiveValues(ShortRepr):
 
     @classmethod
     def of(cls, program: ReadyProgram[str], found: Iterable[Number]) -> ObjectiveValues:
-        """Return the results of a program: sum and margin come first."""
+        """Return the results of a program: sum and margin come first, the longest steps, which are left out, last."""
         (_, value), (_, least), *slopes = zip(program.nodes, found, strict=False)
         return cls(value, least, dict(slopes))
 
