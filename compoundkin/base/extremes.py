@@ -61,7 +61,8 @@ ALIKE = 1e-9
 # What a curve may rise beyond a sample, in second differences there. The vertex of a parabola whose middle sample is
 # the highest adds an eighth.
 MOST_ADDED = 0.5
-# What is so many times the median of the values is on its way through infinity, as the reciprocal of a rate.
+# What is so many times all values that have one as large next to them is on its way through infinity, as the
+# reciprocal of a rate.
 POLE = 1e6
 # A bracket of a zero is narrowed so often at most: to 1e-13 of it.
 NARROWINGS_TO_ZERO = 14

@@ -308,13 +308,17 @@ class ExtremeSearch(Course):
 
     @cached_property
     def _typical(self) -> Number:
-        """How large values mostly are, (quantities, groups): of all designs, or of each where their sizes differ."""
+        """How large values are away from poles, (quantities, groups): of all designs, or of each if their sizes differ.
+
+        A stretch has a pole at one end at most. Of a motion that mostly rests the median would be rounding.
+        """
+        lesser = np.minimum(self._known[..., 0], self._known[..., 1])
         if not np.ndim(self.motion.sizes):
-            found = [_median(row) for row in self._known]
+            found = [_greatest(row) for row in lesser]
             return np.broadcast_to(np.fmax(found, self._slack.max(axis=1))[:, None], self._slack.shape)
         in_order = np.argsort(self.stretches.design, kind="stable")
         ends = np.searchsorted(self.stretches.design[in_order], [self.designs, self.designs + 1])
-        of_designs = [[_median(row[in_order[a:b]]) for a, b in ends.T] for row in self._known]
+        of_designs = [[_greatest(row[in_order[a:b]]) for a, b in ends.T] for row in lesser]
         return np.fmax(of_designs, self._slack)
 
     def _without_limit(self) -> Iterator[Offers]:
@@ -334,9 +338,9 @@ class ExtremeSearch(Course):
         yield Offers(self._kinds(m, sign, which[k]), np.full(len(k), np.inf), at)
 
 
-def _median(values: Number) -> float:
+def _greatest(values: Number) -> float:
     known = values[np.isfinite(values)]
-    return float(np.median(known)) if known.size else np.inf
+    return float(np.max(known)) if known.size else np.inf
 
 
 # The least values are the greatest of the opposite.

@@ -69,9 +69,12 @@ class SampledCourse(NamedTuple):
         return SampledCourse(self.parts, *(each.take(rows, axis=0) for each in self[1:]))
 
     def pass_infinity(self, rows: Number, values: Number) -> Number:
-        """Tell which values of designs, by index, are far beyond the median: as the reciprocal of a rate."""
-        low: Number = POLE * np.abs(self.values[rows]) < values[:, None]
-        return low.mean(axis=1) > 0.5
+        """Tell which values of designs, by index, are far beyond all samples in pairs: as the reciprocal of a rate.
+
+        Of two neighbours a pole is at one at most. Of a course that mostly rests the median would be rounding.
+        """
+        sizes = np.abs(self.values[rows])
+        return values > POLE * np.minimum(sizes[:, 1:], sizes[:, :-1]).max(axis=1, initial=0.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -218,6 +218,26 @@ def test_a_pole_exactly_at_a_pose_is_without_limit_on_both_sides() -> None:
     assert found.greatest.value == np.inf
 
 
+def test_the_greatest_rate_of_a_motion_that_mostly_rests_is_finite() -> None:
+    from compoundkin.model.cam_mechanism import cam_mechanism
+
+    lift = ck.laws.program(
+        ck.laws.rise(0.4, over=1.4),
+        ck.laws.dwell(over=0.6),
+        ck.laws.fall(0.4, over=2.2),
+        ck.laws.dwell(over=2.0 * np.pi - 4.2),
+    )
+    cam = cam_mechanism(ck.profiles.synthesise(lift, base=1.6, follower="roller", roller=0.3))
+    motion = ck.solve(cam, np.linspace(4.0, 2.0 * np.pi + 0.75, 20), speed=1.0)
+    assert np.mean(np.abs(motion.points["P"].velocity) < 1e-9) > 0.5
+    # the greatest rate of a cycloidal rise is twice the mean
+    assert ck.quantity(motion, "P.velocity.length.greatest").values[0] == pytest.approx(0.8 / 1.4, rel=1e-9)
+    studied = ck.study(cam, {"follower/cam.radius": (0.2, 0.3)}, ["P.velocity.length.greatest"],
+                       count=4, values=np.linspace(4.0, 2.0 * np.pi + 0.75, 20), speed=1.0)  # fmt: skip
+    found = studied.run()["P.velocity.length.greatest"]
+    assert np.allclose(found, 0.8 / 1.4, rtol=0.05, atol=0.0)
+
+
 def test_beside_a_gap_ranges_are_those_between_the_poses_too() -> None:
     """What grows without limit at the ends of a gap does not hide the least value elsewhere."""
     path = ck.compile(mechanism("six-bar"), ["bar.angle"], free=["frame.B.x"])
