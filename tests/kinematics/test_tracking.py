@@ -400,12 +400,25 @@ def test_designs_drawn_at_angles_of_their_own_are_followed_like_each_by_itself()
             assert np.allclose(*both, rtol=1e-7, atol=1e-9, equal_nan=True)
 
 
-def test_a_motion_of_many_turns_is_followed_until_it_repeats_itself(monkeypatch):
-    mechanism, turns = ck.load("class-iii-six-bar"), 2.0 * np.pi * np.array([0.0, -3.0, 2000.0])
+def turning_plate():
+    """A plate that turns with the driver: two cranks about close pivots carry it, a third pulls it by a rod."""
+    pivots = {"O": 0j, "H": 0.1 + 0.05j, "I": -0.1 - 0.1j}
+    pins = {"E": 1 + 0j, "B": pivots["H"] + np.exp(0.9j), "C": pivots["I"] + 1.05 * np.exp(1.7j)}
+    pins["A"] = pins["B"] + 0.15 * np.exp(0.5j)
+    links = [ck.link("frame", *"OHI"), ck.link("plate", *"ABC"), ck.link("crank", "O", "E"), ck.link("rod", "E", "A")]
+    links += [ck.link("one", "H", "B"), ck.link("two", "I", "C")]
+    return ck.Mechanism("turning plate", *links, ck.drive("crank"), ck.drawn(**pivots, **pins))
+
+
+@pytest.mark.parametrize("turned", [0.0, 1.0])
+def test_a_motion_of_many_turns_is_followed_until_it_repeats_itself(turned, monkeypatch):
+    mechanism = turning_plate() if turned else ck.load("class-iii-six-bar")
+    turns = 2.0 * np.pi * np.array([0.0, -3.0, 2000.0])
     motion, once = ck.solve(mechanism, 0.3 + turns), ck.solve(mechanism, [0.3])
     (path,) = motion.followed.curve.paths.values()
     assert path.repeats.turns == 1
     assert path.s.size < 100
+    np.testing.assert_allclose(np.abs(path.repeats.gone).max(), 2.0 * np.pi * turned)
     for letter in mechanism.carriers:
         np.testing.assert_allclose(
             motion.points[letter].velocity, once.points[letter].velocity[0], rtol=0.0, atol=1e-11 * once.size

@@ -549,3 +549,14 @@ def test_change_points_of_a_design_are_searched_once(monkeypatch, name):
         for key, found in path(course, speed=2.0).items():
             wanted = motion.points[key.partition(".")[0]].velocity
             np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-9 * motion.size)
+
+
+def test_single_poses_beyond_a_change_point_on_the_way_are_in_the_mode_of_solve():
+    """Asked for again and again, so that what is known of the way from the drawing counts."""
+    mechanism = loaded("parallelogram")
+    path = ck.compile(mechanism, [f"{point}.position" for point in mechanism.carriers], backend="numpy")
+    for value in (1.0, 4.0, 4.1, 1.1, 4.2, -0.5):
+        motion = ck.solve(mechanism, [value])
+        for name, found in path([value]).items():
+            wanted = motion.points[name.partition(".")[0]].position
+            np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-9 * motion.size)

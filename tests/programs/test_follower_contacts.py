@@ -125,6 +125,25 @@ def test_a_dyad_behind_a_follower_keeps_the_side_that_solve_has():
             agree(path(course, {"frame.D": place}, speed=2.0), motion, mechanism.carriers)
 
 
+def test_a_dyad_behind_a_follower_goes_through_the_change_point_on_the_way_from_the_drawing():
+    """It is stretched where the follower is highest, at a quarter turn, and there goes over to its other mode."""
+    oval = ck.profiles.formula(lambda s: 2.0 * np.cos(s) + 1j * 1.6 * np.sin(s), 0.0, TURN)
+    items = (
+        ck.link("frame", A=0, D=1.3j), ck.link("cam", A=0, Q=1), ck.link("follower", P=0, B=1),
+        ck.link("coupler", B=0, C=1), ck.link("rocker", C=1, D=0), ck.drive("cam"),
+        ck.slide("follower", on="frame", at="P", through="A", angle=0.5 * np.pi),
+        ck.cam("follower", on="cam", at="P", profile=oval, radius=0.3),
+    )  # fmt: skip
+    start = ck.solve(ck.Mechanism("stretched", *items, ck.mode(1, "coupler", "rocker")), [0.9])
+    drawn = {letter: complex(point.position[0]) for letter, point in start.points.items()}
+    mechanism = ck.Mechanism("stretched", *items, ck.drawn(**drawn))
+    path = ck.compile(mechanism, "C.position", backend="numpy")
+    for angle in (1.2, 2.4, 2.5, 1.3):
+        wanted = ck.solve(mechanism, [angle]).points["C"].position
+        assert (wanted[0].real > 0.0) == (angle > 0.5 * np.pi)
+        np.testing.assert_allclose(path([angle])["C.position"], wanted, rtol=0.0, atol=1e-12)
+
+
 def test_at_a_joint_of_pieces_accelerations_are_those_of_the_side_that_solve_takes():
     law = ck.laws.program(
         ck.laws.rise(0.3, over=1.4, law="parabolic"), ck.laws.dwell(over=0.6),
