@@ -144,6 +144,29 @@ def test_a_dyad_behind_a_follower_goes_through_the_change_point_on_the_way_from_
         np.testing.assert_allclose(path([angle])["C.position"], wanted, rtol=0.0, atol=1e-12)
 
 
+@pytest.mark.filterwarnings("ignore::compoundkin.errors.UnassembledPoses")
+@pytest.mark.parametrize("kind", ["face", "roller"])
+def test_a_contact_beyond_another_one_is_left_to_solve(kind):
+    """Another wave of the profile is in the way of a face, and of a roller that leaves an open profile."""
+    if kind == "face":
+        s = np.linspace(0.0, TURN, 80, endpoint=False)
+        profile = ck.profiles.profile(np.exp(1j * s) * (2.0 + 0.286 * np.cos(5.0 * s)))
+        items = ck.link("follower", H=0), ck.face("follower", on="cam", at="H", profile=profile)
+        course, pivot = np.linspace(0.0, TURN, 120), -2.97 + 2.53j
+    else:
+        x = np.linspace(-1.5, 1.5, 25)
+        profile = ck.profiles.profile(x + 1j * (2.0 + 0.179 * np.cos(6.0 * x)), closed=False)
+        items = ck.link("follower", H=0, P=2.281), ck.cam("follower", on="cam", at="P", profile=profile, radius=0.837)
+        course, pivot = np.linspace(0.0, 0.8, 120), -3.213 - 1.121j
+    mechanism = ck.Mechanism(
+        kind, ck.link("frame", A=0, H=pivot), ck.link("cam", A=0), *items, ck.drive("cam"), ck.mode(1, "follower"),
+    )  # fmt: skip
+    path = ck.compile(mechanism, "follower.angle", backend="numpy")
+    for values in (course, *course[::8, None]):
+        wanted = ck.solve(mechanism, values).links["follower"].angle
+        np.testing.assert_allclose(path(values)["follower.angle"], wanted, rtol=0.0, atol=1e-12)
+
+
 def test_at_a_joint_of_pieces_accelerations_are_those_of_the_side_that_solve_takes():
     law = ck.laws.program(
         ck.laws.rise(0.3, over=1.4, law="parabolic"), ck.laws.dwell(over=0.6),
