@@ -125,6 +125,14 @@ def test_fast_links_pass_after_many_turns_too():
     assert "velocity, differences" in ck.verify(wrong).failed
 
 
+def test_links_that_turn_back_pass_after_a_million_turns():
+    """At a dead point a link has no speed, by which rounding of the driver's value would be allowed for."""
+    motion = ck.solve(ck.load("scott-russell"), np.pi * 2e6 + np.linspace(0.0, np.pi, 9), speed=1.0)
+    assert ck.verify(motion).passed
+    wrong = corrupted(motion, "rod", "z", 2, lambda c: c * (1 + 1e-5))
+    assert not ck.verify(wrong).passed
+
+
 def test_a_rack_that_fits_at_one_place_of_a_yoke_that_moves_is_found():
     """Velocities from centres are wrong there: the cause is that nothing keeps the pinion at its distance."""
     mechanism = ck.Mechanism(

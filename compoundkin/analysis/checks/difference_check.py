@@ -54,7 +54,11 @@ def difference_findings(motion: Motion) -> Iterator[Finding]:
                 found, rest = (_weighted(each, places) for each in (weights, weights - fewer))
                 own = series.derivative(k) * step**k
                 # relative to the largest derivative the series' own time allows
-                gap = _beyond(found - own, np.abs(rest) + late * np.abs(series.derivative(1)))
+                pace = np.abs(series.derivative(1))
+                if motion.order > 1:
+                    # at a turning point the neighbours move, though the pose does not
+                    pace = pace + OFFSETS[-1] * step * np.abs(series.derivative(2))
+                gap = _beyond(found - own, np.abs(rest) + late * pace)
                 parts[link] = np.maximum(parts.get(link, 0.0), gap / (STEP**k * size))
         yield worst(motion, f"{NAMES[k]}, differences", LIMITS[k], _rounded(motion, k, step, parts), counted)
 
