@@ -43,6 +43,10 @@ STRICT = Tolerance(1e-9, 1e-9)
 ROUNDED = Tolerance(1e-5, 1e-4)
 
 
+# No steps lead from the origin to a frame so many sizes away.
+FAR_FRAME = 5.0
+
+
 @dataclass(frozen=True)
 class Rows:
     """The rows of a Jacobian that belong to one pair. They tell which pair, and where they begin and end."""
@@ -90,6 +94,13 @@ class ConstraintEquations:
     def size(self) -> float:
         """The mechanism's length scale."""
         return self.mechanism.geometry.size
+
+    @cached_property
+    def around(self) -> complex:
+        """The place around which poses are looked for: the origin, or the middle of a frame that is far from it."""
+        places = [complex(_number(place)) for place in self.mechanism.geometry.points[FRAME].values()]
+        middle = complex(np.mean(places)) if places else 0j
+        return middle if abs(middle) > FAR_FRAME * self.size else 0j
 
     @cached_property
     def rows(self) -> tuple[Rows, ...]:
@@ -382,11 +393,12 @@ def _starts(equations: ConstraintEquations) -> Iterator[tuple[Array, bool]]:
     shown = _drawn(equations)
     missing = [name for name in equations.links if name not in shown]
     places, guided = _places(equations, shown), _guided(equations, shown)
-    still = {name: _placed(equations, name, places, guided.get(name, 0.0)) for name in missing}
+    middle = equations.around
+    still = {name: _placed(equations, name, places, guided.get(name, 0.0), middle) for name in missing}
     yield equations.state({**shown, **still}), not missing
     rng = np.random.default_rng(len(missing))
     for _ in range(min(TRIES, COLUMNS // equations.width) if missing else 0):
-        around = complex(*rng.standard_normal(2)) * equations.size / 2.0
+        around = middle + complex(*rng.standard_normal(2)) * equations.size / 2.0
         angles = {name: float(rng.uniform(-np.pi, np.pi)) for name in missing} | guided
         turned = {name: _placed(equations, name, places, angles[name], around) for name in missing}
         yield equations.state({**shown, **turned}), False
@@ -438,7 +450,7 @@ def _places(equations: ConstraintEquations, shown: Mapping[str, Pose]) -> dict[s
 
 
 def _placed(
-    equations: ConstraintEquations, name: str, places: Mapping[str, complex], angle: float, around: complex = 0j
+    equations: ConstraintEquations, name: str, places: Mapping[str, complex], angle: float, around: complex
 ) -> Pose:
     """Place a link that is not shown, at an angle; at the place of one of its points that is shown, else anywhere."""
     points = equations.mechanism.geometry.points[name]

@@ -115,9 +115,9 @@ def _random_states(equations: ConstraintEquations) -> Iterator[Array]:
     drawn = equations.mechanism.geometry.drawn
     if all(name in drawn for name in equations.links):
         yield equations.state({name: drawn[name].entry((0, 0)) for name in equations.links})
-    rng = np.random.default_rng(SEED)
+    rng, middle = np.random.default_rng(SEED), equations.around / equations.size
     for _ in range(STARTS):
-        places = rng.standard_normal((len(equations.links), 2)) / 2.0
+        places = rng.standard_normal((len(equations.links), 2)) / 2.0 + [middle.real, middle.imag]
         yield np.column_stack([places, rng.uniform(-np.pi, np.pi, len(places))]).ravel()
 
 

@@ -221,3 +221,17 @@ def test_further_planets_change_nothing(count):
     np.testing.assert_allclose(motion.links["sun"].angular_velocity, 6.0, rtol=1e-12)
     assert ck.mobility_analysis(planets(count)).redundant == count - 1
     assert ck.verify(motion).passed
+
+
+@pytest.mark.parametrize("off", [0.0, 1e3 - 2e3j])
+def test_a_third_crank_far_from_the_origin_is_redundant_too(off):
+    cranks = [ck.link(f"crank-{k}", **{f"A{k}": 0, f"B{k}": 1j}) for k in range(3)]
+    mechanism = ck.Mechanism(
+        "three cranks", ck.link("frame", **{f"A{k}": 2.0 * k + off for k in range(3)}),
+        ck.link("bar", **{f"B{k}": 2.0 * k for k in range(3)}), *cranks,
+        ck.drive("crank-0", values=np.linspace(0.3, 1.2, 7)),
+    )  # fmt: skip
+    motion = ck.solve(mechanism)
+    assert motion.assembled.all()
+    expected = off + 2.0 + 1j * np.exp(1j * np.linspace(0.3, 1.2, 7))
+    np.testing.assert_allclose(motion.points["B1"].position, expected, rtol=0.0, atol=1e-11 * (1.0 + abs(off)))
