@@ -202,6 +202,19 @@ def test_what_is_found_does_not_change_with_the_arrays_that_were_given(path, spe
     np.testing.assert_allclose(own.motion().points["G"].position[0], own["G.position"], atol=1e-10)
 
 
+@pytest.mark.parametrize("name", ["class-iii-six-bar", "flat-faced-follower"])
+def test_what_is_searched_does_not_change_with_the_values_that_were_given_either(name):
+    mechanism = loaded(name)
+    point = [*mechanism.carriers][-1]
+    path = ck.compile(mechanism, f"{point}.position", backend="numpy")
+    for _ in range(2):  # read in full, and by its plan
+        values = np.linspace(0.3, 0.9, 20)
+        found = path(values)
+        values += 1.0
+        (position,) = found.motion().points[point].position
+        np.testing.assert_allclose(position, found[f"{point}.position"], atol=1e-10 * np.abs(position).max())
+
+
 @pytest.mark.parametrize("poses", [200, 5000])
 def test_results_may_be_written_over_the_values_that_were_given(poses):
     path, values = ck.compile(loaded("six-bar"), ["G.x", "G.y"]), np.linspace(0.3, 7.0, poses)
