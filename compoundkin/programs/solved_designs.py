@@ -120,6 +120,9 @@ def _group_seeds(motion: Motion, block: Block, solver: GroupSolver, parts: Seque
     if any(seed.part == SIGN for seed in parts):
         designs, poses = motion.failed.shape
         return {SIGN: motion.followed.sign(solver.index, np.arange(designs)[:, None], np.arange(float(poses))[None])}
+    if len(parts) > solver.width:
+        # this design has a sign where the program's own has none
+        solver = solver.followed() or solver
     return {str(k): number for k, number in enumerate(solver.state(block))}
 
 

@@ -112,6 +112,18 @@ def test_a_turning_face_has_no_contact_in_a_hollow(bow):
     np.testing.assert_array_equal(ck.compile(mechanism, "P", backend="numpy")(course).assembled, motion.assembled)
 
 
+def test_a_design_without_the_inner_contact_of_its_path_is_solved():
+    s = np.linspace(0.0, TURN, 160, endpoint=False)
+    clover = ck.profiles.profile(np.exp(1j * s) * (2.0 + 0.9 * np.cos(3.0 * s)))
+    mechanism = cam_with(clover, FRAME, FOLLOWER, roller=0.0, offset=1.15)
+    course, hint = np.linspace(0.0, 0.2, 9), {"P": -1.15 + 0.6j}
+    path = ck.compile(mechanism, "P.position", free="follower/frame.offset", hint=hint, backend="numpy")
+    for offset in (1.15, 0.3):
+        motion = ck.solve(path.mechanism({"follower/frame.offset": offset}), course, hint=hint)
+        found = path(course, {"follower/frame.offset": offset})
+        np.testing.assert_allclose(found["P.position"], motion.points["P"].position, rtol=0.0, atol=1e-12)
+
+
 def test_a_dyad_behind_a_follower_keeps_the_side_that_solve_has():
     oval = ck.profiles.formula(lambda s: 2.0 * np.cos(s) + 1j * 1.6 * np.sin(s), 0.0, TURN)
     frame = ck.link("frame", A=0, D=4 + 3j)
