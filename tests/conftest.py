@@ -23,7 +23,7 @@ sys.path.insert(0, str(TESTS.parent))
 # Nine thousand tests keep many objects: going through all of them so often takes a twentieth of the time.
 gc.set_threshold(100_000, 20, 50)
 
-_EXAMPLES = 16 if os.environ.get("COMPOUNDKIN_TESTS") == "all" else 10
+_EXAMPLES = 16 if os.environ.get("COMPOUNDKIN_TESTS") == "all" else 8
 settings.register_profile("compoundkin", derandomize=True, deadline=None, max_examples=_EXAMPLES, database=None)
 settings.load_profile("compoundkin")
 

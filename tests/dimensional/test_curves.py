@@ -551,6 +551,7 @@ def meets_finely(a: np.ndarray, b: np.ndarray, shape: Path_) -> bool:
     return bool(shape.contains_points(np.stack([line.real, line.imag], axis=-1)).any())
 
 
+@pytest.mark.full
 def test_obstacles_are_kept_clear_of() -> None:
     """The nearest linkage runs into it; what is given does not, of places along all links at many poses."""
     task, plain = ck.tasks.curve(EGG, links=4), four_bars_for_the_egg()
