@@ -1,4 +1,4 @@
-"""Zeros and extremes between bounds, in many brackets at once: bisection, false position, golden section, Newton."""
+"""Zeros and extremes between bounds, in many brackets at once: by halves, interpolation, golden section, Newton."""
 
 from __future__ import annotations
 

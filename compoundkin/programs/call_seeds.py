@@ -46,7 +46,7 @@ class CallSeeds:
     approach: DrawnApproach
     backend: str | None
     _known_starts: dict[Any, MarchStart] = field(default_factory=dict)
-    _contacts: dict[int, FollowerContacts | None] = field(default_factory=dict)
+    _contacts: dict[int, tuple[RecordedPath, FollowerContacts | None]] = field(default_factory=dict)
     _clear: ClearApproaches = field(default_factory=ClearApproaches)
     _continuations: dict[Any, DesignContinuation] = field(default_factory=dict)
 
@@ -75,8 +75,9 @@ class CallSeeds:
     def _contacts_of(self, path: RecordedPath) -> FollowerContacts | None:
         """Return the followers of a path, if that asks for nothing else."""
         if id(path) not in self._contacts:
-            self._contacts[id(path)] = FollowerContacts.of(path, self.backend)
-        return self._contacts[id(path)]
+            # the path is kept, so that no other one is known by its number
+            self._contacts[id(path)] = path, FollowerContacts.of(path, self.backend)
+        return self._contacts[id(path)][1]
 
     def _with_contacts(self, contacts: FollowerContacts, numbers: CallNumbers) -> CallNumbers:
         """Return the numbers of a call with the contacts of followers; designs where they are not sure are solved."""

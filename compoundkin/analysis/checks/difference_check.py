@@ -54,11 +54,7 @@ def difference_findings(motion: Motion) -> Iterator[Finding]:
                 found, rest = (_weighted(each, places) for each in (weights, weights - fewer))
                 own = series.derivative(k) * step**k
                 # relative to the largest derivative the series' own time allows
-                pace = np.abs(series.derivative(1))
-                if motion.order > 1:
-                    # at a turning point the neighbours move, though the pose does not
-                    pace = pace + OFFSETS[-1] * step * np.abs(series.derivative(2))
-                gap = _beyond(found - own, np.abs(rest) + late * pace)
+                gap = _beyond(found - own, np.abs(rest) + late * _pace(series, step, motion.order))
                 parts[link] = np.maximum(parts.get(link, 0.0), gap / (STEP**k * size))
         yield worst(motion, f"{NAMES[k]}, differences", LIMITS[k], _rounded(motion, k, step, parts), counted)
 
@@ -80,6 +76,12 @@ def _rounded_time(motion: Motion) -> Number:
             speed = np.abs(rates[0])
             late = np.maximum(late, np.divide(np.spacing(np.abs(value)), speed, out=late * 0.0, where=speed > 0.0))
     return late
+
+
+def _pace(series: Series, step: Number, order: int) -> Number:
+    """Return how fast a pose or its farthest neighbour is: at a turning point neighbours move, though it does not."""
+    pace = np.abs(series.derivative(1))
+    return pace + OFFSETS[-1] * step * np.abs(series.derivative(2)) if order > 1 else pace
 
 
 def _beyond(gap: Number, rest: Number) -> Number:
